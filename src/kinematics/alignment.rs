@@ -1,7 +1,7 @@
 //! The geometry that lets bodies move with all drivers held, in words.
 
-use super::element::Element;
 use super::error::list;
+use super::origin::Element;
 use crate::mechanism::{BodyId, JointKind, Mechanism};
 
 /// The geometry of a group of bodies that can move, to first order, with all drivers held.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::element::Element;
+use super::origin::Element;
 use crate::mechanism::{ProfileError, show_time, shown, shown_apart};
 
 /// A call of the kinematics that could not do its work.

@@ -28,56 +28,45 @@
 //! | file or folder | subject |
 //! |---|---|
 //! | `linear` | dense and sparse matrices, condition, rank |
-//! | `element`, `error`, `alignment`, `newton` | names for messages; errors; lines that meet; limits of Newton–Raphson |
-//! | `configuration` | the bodies and markers at one q |
-//! | [`constraint`], [`variation`] | one relation per file; its derivatives along a direction |
-//! | `system` | the equations, their scales and their linearisation |
-//! | `structure` | matching and blocks |
+//! | `origin`, `error`, `alignment`, `newton` | names for messages; errors; lines that meet; limits of Newton–Raphson |
+//! | [`constraint`] | the bodies and markers at one q; one relation per file, with its derivatives |
+//! | `system` | the equations, their scales, their linearisation and their structure |
 //! | `path` | time, parameters and drivers over one step |
 //! | `certificate` | the proof that one motion joins the ends of a sub-step |
-//! | `block` | the plan, and one solver per kind of block |
-//! | `model`, `state` | all that is compiled; all that moves |
+//! | `plan` | the compiled mechanism: one solver per block |
+//! | `state` | all that moves |
 //! | `assembly` | a pose from the estimates |
 //! | `redundancy` | rows that follow from others, and those that are solved |
 //! | `singular` | dead points and change points |
 //! | `continuation` | sub-steps along a path |
-//! | `initial_pose`, `start` | the first pose; the motion from there to the values of a start |
+//! | `start` | the first pose; the motion from there to the values of a start |
 //! | `analysis` | sensitivity, range, modes, instant centres, checks of the geometry |
 //! | `forces` | efforts of drivers, reactions of joints, energies |
 //! | `solver` | the facade |
-//! | `signals` | its values of signals and of measures computed from them |
-//! | `output` | the outputs by name |
-//! | `solution` | rates and forces at a pose |
+//! | `results` | the outputs by name; values of signals and measures; rates and forces at a pose |
 
 mod alignment;
 mod analysis;
 mod assembly;
-mod block;
 mod certificate;
-mod configuration;
 pub mod constraint;
 mod continuation;
-mod element;
 mod error;
 mod forces;
-mod initial_pose;
 mod linear;
-mod model;
 mod newton;
-mod output;
+mod origin;
 mod path;
+mod plan;
 mod redundancy;
 #[cfg(test)]
 mod reference;
-mod signals;
+mod results;
 mod singular;
-mod solution;
 mod solver;
 mod start;
 mod state;
-mod structure;
 mod system;
-pub mod variation;
 
 pub use alignment::{Alignment, Member, Relation};
 pub use analysis::{
@@ -85,24 +74,23 @@ pub use analysis::{
     Mode, Modes, Play, Range, RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;
-pub use block::{BlockCarryover, CheckedSegment, Crossing, Polynomial};
-pub use configuration::{
+pub use constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
 pub use continuation::{Blocked, Progress, Reason};
-pub use element::Element;
 pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Verdict};
 pub use forces::{
     ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff, Reported,
 };
-pub use initial_pose::Assembly;
 pub use linear::PivotOrder;
-pub use output::{Output, OutputSource, omitted_reactions};
+pub use origin::Element;
 pub use path::{Curve, Path, Rates};
+pub use plan::{BlockCarryover, CheckedSegment, Crossing, Polynomial};
 pub use redundancy::Redundancy;
+pub use results::{Output, OutputSource, Solution, omitted_reactions};
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
-pub use solution::Solution;
 pub use solver::Solver;
+pub use start::Assembly;
 pub use state::{Carryover, Pose};
-pub use structure::{Dependencies, Structure};
+pub use system::structure::{Dependencies, Structure};
 pub use system::{Equation, System, Target, Targets};

@@ -2,12 +2,12 @@
 
 /// The outcome of a correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Correction {
+pub(in crate::kinematics) struct Correction {
     /// Corrections applied.
-    pub(super) iterations: u32,
+    pub(in crate::kinematics) iterations: u32,
     /// A cheap measure of the distance from a singular position, one at best: it is small wherever
     /// the reciprocal condition is, not the other way round.
-    pub(super) regularity: f64,
+    pub(in crate::kinematics) regularity: f64,
 }
 
 impl Default for Correction {
@@ -22,36 +22,36 @@ impl Default for Correction {
 
 /// A correction without a pose, or with one that may be off the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Rejected;
+pub(in crate::kinematics) struct Rejected;
 
 /// A residual up to this many times its estimated rounding error counts as zero.
-pub(super) const AT_ROUNDING: f64 = 4.0;
+pub(in crate::kinematics) const AT_ROUNDING: f64 = 4.0;
 /// A residual up to this many times its rounding error that has stopped falling counts as zero,
 /// too: the estimate of the rounding leaves out the sums and products inside a row.
-pub(super) const STALLED: f64 = 100.0;
+pub(in crate::kinematics) const STALLED: f64 = 100.0;
 
 /// Limits of Newton–Raphson.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
+pub(in crate::kinematics) struct Limits {
     /// Most corrections.
-    pub(super) iterations: u32,
+    pub(in crate::kinematics) iterations: u32,
     /// A residual up to this many times its estimated rounding error counts as zero.
-    pub(super) residual: f64,
+    pub(in crate::kinematics) residual: f64,
 }
 
 impl Limits {
     /// Limits in a step: Newton–Raphson converges quadratically from a good prediction.
-    pub(super) const STEP: Self = Self {
+    pub(in crate::kinematics) const STEP: Self = Self {
         iterations: 8,
         residual: AT_ROUNDING,
     };
     /// Limits in an assembly, which may also creep into a nearly singular position.
-    pub(super) const ASSEMBLY: Self = Self {
+    pub(in crate::kinematics) const ASSEMBLY: Self = Self {
         iterations: 30,
         ..Self::STEP
     };
     /// Limits of corrections that go on until the residual stops falling.
-    pub(super) const TO_THE_LAST_BIT: Self = Self {
+    pub(in crate::kinematics) const TO_THE_LAST_BIT: Self = Self {
         residual: 0.0,
         ..Self::STEP
     };
@@ -59,4 +59,4 @@ impl Limits {
 
 /// A reciprocal condition below this belongs to a singular position: there Newton–Raphson ends
 /// within the square root of the machine's rounding, and rates mean nothing.
-pub(super) const SINGULAR: f64 = 1e-7;
+pub(in crate::kinematics) const SINGULAR: f64 = 1e-7;

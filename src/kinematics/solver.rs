@@ -6,20 +6,20 @@ use super::analysis::{
     self, Direction, GeometryWarning, InstantCentre, Modes, Range, RangeSettings, Sensitivity,
 };
 use super::assembly::estimate::{Move, estimate, moves};
-use super::block::Crossing;
 use super::continuation::{Blocked, PathTracker, Progress};
-use super::element::Element;
 use super::error::Error;
 use super::forces::{self, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
-use super::initial_pose::{self, Assembly};
-use super::model::Model;
+use super::origin::Element;
 use super::path::{Curve, Path, Rates};
+use super::plan::Crossing;
+use super::plan::model::Model;
 use super::redundancy::{self, Redundancy};
 use super::singular::{self, Approach};
 use super::start;
+use super::start::initial_pose::{self, Assembly};
 use super::state::{Carryover, Pose, State};
-use super::structure::Structure;
 use super::system::System;
+use super::system::structure::Structure;
 use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism, Motion, Order, ParameterId};
 
 /// Solves position, velocity and acceleration of one mechanism.

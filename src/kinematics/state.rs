@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::block::{BlockCarryover, BlockState, Crossing, JacobianFactors};
-use super::configuration::Configuration;
+use super::constraint::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity};
 use super::error::Error;
-use super::model::Model;
 use super::newton::Rejected;
 use super::path::{Curve, Motions, Path, Rates};
+use super::plan::model::Model;
+use super::plan::{BlockCarryover, BlockState, Crossing, JacobianFactors};
 use super::system::{System, Targets, Values};
 use crate::mechanism::{DriverId, Jet, MarkerId};
 

@@ -8,9 +8,9 @@ use std::fmt;
 
 use nalgebra::Vector2;
 
-use crate::kinematics::configuration::{Configuration, ProfileId, perp};
 use crate::kinematics::constraint::Contour;
-use crate::kinematics::model::Model;
+use crate::kinematics::constraint::configuration::{Configuration, ProfileId, perp};
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 use crate::mechanism::{
     CamFollower, Expression, Interval, Jet3, JointKind, MarkerId, ProfileInForce, RackSide,

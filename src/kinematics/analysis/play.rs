@@ -9,10 +9,10 @@ use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
-use crate::kinematics::element::Element;
 use crate::kinematics::error::{Error, OpenJoint};
-use crate::kinematics::model::Model;
+use crate::kinematics::origin::Element;
 use crate::kinematics::path::Path;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Mechanism};
 

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use super::transmission::Passages;
 use crate::kinematics::continuation::{PathTracker, Reason};
-use crate::kinematics::model::Model;
 use crate::kinematics::newton::Limits;
 use crate::kinematics::path::{Curve, Path, Rates};
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::{Pose, State};
 use crate::mechanism::{DriverId, Jet};

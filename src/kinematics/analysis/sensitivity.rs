@@ -11,15 +11,17 @@
 //!
 //! The relations on [`Varied`] numbers give Φ, Φ̇ and Φ̈ with their changes.
 
-use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::constraint::Constraint;
+use crate::kinematics::constraint::moving_configuration::{
+    Varied, VariedConfiguration, VariedMechanism, evaluate,
+};
 use crate::kinematics::error::{Error, NoLimit};
-use crate::kinematics::model::Model;
 use crate::kinematics::path::Rates;
+use crate::kinematics::plan::JacobianFactors;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::singular::{Kind, NearPoint, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::{System, Target};
-use crate::kinematics::variation::{Varied, VariedConfiguration, VariedMechanism, evaluate};
 use crate::mechanism::{
     DerivedMeasure, DriverId, Dual, Expression, Jet, MarkerId, Mechanism, Motion, MotionInForce,
     Order, ParameterId, ProfileAlong, Signal,

@@ -18,12 +18,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::kinematics::block::{BlockSolver, JacobianFactors};
-use crate::kinematics::configuration::{Configuration, perp};
+use crate::kinematics::constraint::configuration::{Configuration, perp};
 use crate::kinematics::constraint::{Axis, Gradient, Relation, point_velocity};
-use crate::kinematics::element::Element;
 use crate::kinematics::linear::{dot, nan_or_larger, subtract};
-use crate::kinematics::model::Model;
+use crate::kinematics::origin::Element;
+use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::{BlockSolver, JacobianFactors};
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
 use crate::mechanism::{CoordinateKind, JointKind, MarkerId};

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use super::least_squares::LeastSquares;
 use super::loops::{AllBranches, all_branches};
 use super::part::{Distance, STARTS};
-use crate::kinematics::block::{BlockBranches, BlockState, ClosureGap, SolveBlock};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
+use crate::kinematics::plan::{BlockBranches, BlockState, ClosureGap, SolveBlock};
 
 /// Starts anywhere for a small block whose branches bounds do not list.
 const STARTS_ANYWHERE: usize = 24;

@@ -2,8 +2,8 @@
 
 use super::turns::fix_turns;
 use crate::kinematics::error::Error;
-use crate::kinematics::model::Model;
 use crate::kinematics::path::Path;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
 

@@ -2,9 +2,9 @@
 
 use super::least_squares::LeastSquares;
 use crate::kinematics::constraint::Dimension;
-use crate::kinematics::element::Element;
 use crate::kinematics::error::OpenJoint;
-use crate::kinematics::model::Model;
+use crate::kinematics::origin::Element;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 
 /// Returns the joints, constraints and drivers of these rows with a noticeable part of the largest

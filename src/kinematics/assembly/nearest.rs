@@ -9,10 +9,10 @@ use super::gaps::{STEPS_TO_NEAREST, gather, open_joints};
 use super::least_squares::LeastSquares;
 use super::part::{LARGEST_PART, STARTS};
 use super::search::{Nearest, NoBranch};
-use crate::kinematics::element::Element;
 use crate::kinematics::error::{Error, OpenJoint, Proof, Verdict};
-use crate::kinematics::model::Model;
 use crate::kinematics::newton::Limits;
+use crate::kinematics::origin::Element;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 
 /// A nearest pose with a scaled residual up to this one is closed: no one could measure the gap,

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::least_squares::{LeastSquares, Pull};
-use crate::kinematics::block::{BlockState, SolveBlock};
 use crate::kinematics::constraint::{Gradient, Relation};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
+use crate::kinematics::plan::{BlockState, SolveBlock};
 use crate::kinematics::system::System;
 
 /// The weights r of Eq. 3.6.9, from one where the estimates count as much as the constraints to

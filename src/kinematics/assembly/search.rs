@@ -7,8 +7,8 @@
 use std::collections::BTreeSet;
 
 use super::branches::{Branches, SearchEffort};
-use crate::kinematics::block::{BlockSolver, BlockState};
-use crate::kinematics::model::Model;
+use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::{BlockSolver, BlockState};
 use crate::kinematics::state::State;
 
 /// Least reciprocal condition of a block in closed form behind which rounding is small enough for a

@@ -32,8 +32,8 @@ use nalgebra::Vector2;
 
 pub(super) use parameters::{Change, LARGEST_JUMP, ParameterBounds};
 
-use super::newton::Rejected;
 use super::system::System;
+use crate::kinematics::newton::Rejected;
 
 /// Bounds of the motion of a body around its chord during a sub-step.
 #[derive(Clone, Copy, Debug, Default)]

@@ -12,13 +12,13 @@ use std::ops::Add;
 
 use nalgebra::Vector2;
 
-use crate::kinematics::configuration::{CamProfile, Configuration};
+use crate::kinematics::constraint::configuration::{CamProfile, Configuration};
+use crate::kinematics::constraint::moving_configuration::{
+    Enclosed, EnclosedProfiles, VariedConfiguration, VariedMechanism, bend, evaluate,
+};
 use crate::kinematics::constraint::{Dimension, partial};
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{Equation, System, Target, Targets};
-use crate::kinematics::variation::{
-    Enclosed, EnclosedProfiles, VariedConfiguration, VariedMechanism, bend, evaluate,
-};
 use crate::mechanism::{
     DriverId, Expression, Interval, Marker, MarkerId, Mechanism, MotionInForce, MovingProfile,
     Number, ParameterId,

@@ -1,10 +1,10 @@
 //! The angle between two markers.
 
+use super::configuration::Configuration;
 use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
+use super::moving_configuration::{Moving, VariedMechanism};
 use super::region::Region;
-use crate::kinematics::configuration::Configuration;
-use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = theta_j − theta_i, with whole turns.

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
+use super::configuration::Configuration;
 use super::definition::{Axis, Constraint, Dimension, Formula, Incidence, is_origin_or_ground};
 use super::gradient::Gradient;
+use super::moving_configuration::{Moving, VariedMechanism};
 use super::point::centripetal;
 use super::region::{Region, centripetal_bound};
-use crate::kinematics::configuration::Configuration;
-use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = the x or y component of P_j − P_i in ground axes.

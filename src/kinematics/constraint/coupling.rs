@@ -1,10 +1,10 @@
 //! Two wheels that turn in a fixed ratio: gears, and wheels on a belt.
 
+use super::configuration::{CoefficientId, Configuration};
 use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
+use super::moving_configuration::{Moving, VariedMechanism};
 use super::region::Region;
-use crate::kinematics::configuration::{CoefficientId, Configuration};
-use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{BodyId, MarkerId, Mechanism};
 
 /// c = (theta_j − phi_c) − k (theta_i − phi_c), with k = ±r_i / r_j and whole turns.

@@ -4,12 +4,12 @@ use std::any::Any;
 
 use nalgebra::Vector2;
 
+use super::configuration::{self, Configuration, JointUnknownId, perp};
 use super::gradient::Gradient;
-use super::region::Region;
-use crate::kinematics::configuration::{self, Configuration, JointUnknownId, perp};
-use crate::kinematics::variation::{
+use super::moving_configuration::{
     self, Enclosed, Moving, Varied, VariedConfiguration, VariedMechanism,
 };
+use super::region::Region;
 use crate::mechanism::{Expression, MarkerId, Mechanism, Number, ParameterId, Taylor};
 
 /// The dimension of a relation, which decides its unit and the scale of its residual.
@@ -43,7 +43,7 @@ impl Axis {
     pub(super) fn of_varied<N: Number>(self, u: [N; 2]) -> [N; 2] {
         match self {
             Self::X => u,
-            Self::Y => variation::quarter_turn(u),
+            Self::Y => moving_configuration::quarter_turn(u),
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
+use super::configuration::Configuration;
 use super::definition::{Constraint, Dimension, Formula, Incidence};
 use super::gradient::Gradient;
+use super::moving_configuration::{Moving, VariedMechanism, subtract};
 use super::point::{centripetal, point_velocity};
 use super::region::{Region, centripetal_bound, chord, speed_bound};
-use crate::kinematics::configuration::Configuration;
-use crate::kinematics::variation::{Moving, VariedMechanism, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = ‖P_j − P_i‖.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::kinematics::configuration::{MarkerPose, perp};
+use super::configuration::{MarkerPose, perp};
 use crate::mechanism::BodyId;
 
 /// A row of the Jacobian: its entries for at most three bodies and one joint unknown.

@@ -18,10 +18,12 @@
 mod angle;
 mod cam;
 mod coincidence;
+pub(super) mod configuration;
 mod coupling;
 mod definition;
 mod distance;
 mod gradient;
+pub mod moving_configuration;
 mod point;
 mod projection;
 mod rack_and_pinion;

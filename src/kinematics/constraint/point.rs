@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::kinematics::configuration::{MarkerPose, perp};
+use super::configuration::{MarkerPose, perp};
 
 /// Returns the velocity of a marker's point: ṙ + omega perp(A s).
 #[must_use]

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector2;
 
+use super::configuration::{Configuration, perp};
 use super::definition::{
     Axis, Constraint, Dimension, Formula, Incidence, axis_components, is_origin_or_ground,
 };
 use super::gradient::Gradient;
+use super::moving_configuration::{Moving, VariedMechanism, dot, subtract};
 use super::point::{angular_velocity, centripetal, point_velocity};
 use super::region::{Region, centripetal_bound, speed_bound};
-use crate::kinematics::configuration::{Configuration, perp};
-use crate::kinematics::variation::{Moving, VariedMechanism, dot, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · (P_j − P_i) with the x- or y-axis e of marker k.

@@ -1,11 +1,11 @@
 //! A pinion that rolls on a rack.
 
+use super::configuration::{CoefficientId, Configuration};
 use super::definition::{Axis, Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
+use super::moving_configuration::{Moving, VariedMechanism};
 use super::projection::Projection;
 use super::region::Region;
-use crate::kinematics::configuration::{CoefficientId, Configuration};
-use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{MarkerId, Mechanism, RackSide};
 
 /// c = s + σ r (theta_p − theta_r) with the coordinate s of the pinion's centre along the rack

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 
+use super::configuration::MarkerPose;
 use super::point::angular_velocity;
-use crate::kinematics::configuration::MarkerPose;
 
 /// A neighbourhood of a pose: each unknown differs by at most its radius from the pose, or else
 /// from one place, the same for all unknowns, on a line through it.

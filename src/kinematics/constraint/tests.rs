@@ -2,10 +2,10 @@
 
 use proptest::prelude::*;
 
-use super::*;
-use crate::kinematics::variation::{
+use super::moving_configuration::{
     Enclosed, EnclosedProfiles, Varied, VariedConfiguration, VariedMechanism,
 };
+use super::*;
 use crate::kinematics::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId,
 };

@@ -1,10 +1,10 @@
 //! Bounds of the deviation of drivers from their chords during a sub-step.
 
 use crate::kinematics::certificate::{LARGEST_JUMP, ParameterBounds, StepBounds};
+use crate::kinematics::constraint::moving_configuration::bend;
 use crate::kinematics::path::{Curve, Path, PathDrivers};
 use crate::kinematics::state::State;
 use crate::kinematics::system::{Equation, System};
-use crate::kinematics::variation::bend;
 use crate::mechanism::{DriverId, Interval, Jet3, Number, ParameterId};
 
 /// Bounds drivers and parameters over a part of `path`, at whose end the drivers ahead and the

@@ -12,12 +12,12 @@ use pace::{Pace, Verdict};
 use super::driver_bounds::bound_drivers;
 use super::outcome::{Blocked, Progress, Reason};
 use crate::kinematics::Error;
-use crate::kinematics::block::{BlockState, Crossing, Extrapolation};
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::OpenJoint;
-use crate::kinematics::model::Model;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::path::{Path, PathDrivers};
+use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::{BlockState, Crossing, Extrapolation};
 use crate::kinematics::redundancy;
 use crate::kinematics::singular::{
     self, DriverLimit, FruitlessSearches, NEAR, SingularKind, SingularPoint,

@@ -1,6 +1,6 @@
 //! Springs, dampers, actuators and loads.
 
-use crate::kinematics::configuration::Configuration;
+use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::mechanism::{

@@ -7,10 +7,10 @@
 use std::collections::BTreeSet;
 
 use crate::kinematics::continuation::PathTracker;
-use crate::kinematics::element::Element;
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::model::Model;
+use crate::kinematics::origin::Element;
 use crate::kinematics::path::{Curve, Path};
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::redundancy::{DEPENDENT, drivers_first, jacobian_rows};
 use crate::kinematics::state::State;
 use crate::mechanism::DriverId;

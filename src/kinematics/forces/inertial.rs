@@ -1,7 +1,7 @@
 //! Masses, and the forces that they demand for a motion.
 
 use super::results::DriverForces;
-use crate::kinematics::configuration::Configuration;
+use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::error::Error;
 use crate::mechanism::{Expression, Mechanism, Number, ParameterId};
 

@@ -1,9 +1,9 @@
 //! Reactions of least norm among those that redundant constraints leave open.
 
 use super::wrench::ReactionRows;
-use crate::kinematics::block::JacobianFactors;
-use crate::kinematics::configuration::Configuration;
+use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::linear::{dot, subtract};
+use crate::kinematics::plan::JacobianFactors;
 use crate::kinematics::system::System;
 
 /// The self-stresses at one pose, Phi_qᵀ λ = 0.

@@ -12,14 +12,14 @@ use super::quantity::ForceQuantity;
 use super::solve::{ForceParts, Forces, KnownMotion, Loads};
 use super::wrench::{Reported, Wrench};
 use crate::kinematics::analysis::{Direction, Sensitivity};
+use crate::kinematics::constraint::moving_configuration::{Varied, VariedConfiguration};
 use crate::kinematics::constraint::{Constraint, Gradient, partial};
 use crate::kinematics::error::{Error, NoLimit};
-use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::singular::{Kind, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
-use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::mechanism::{DriverId, Dual, Load, Mechanism, Number, ParameterId, ProfileAlong};
 
 /// The derivatives of all forces along a direction.

@@ -1,8 +1,8 @@
 //! Force and torque that a joint exerts on the body of its second marker.
 
-use crate::kinematics::configuration::{Configuration, perp};
 use crate::kinematics::constraint::Gradient;
-use crate::kinematics::element::Element;
+use crate::kinematics::constraint::configuration::{Configuration, perp};
+use crate::kinematics::origin::Element;
 use crate::kinematics::system::System;
 use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number};
 

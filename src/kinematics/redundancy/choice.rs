@@ -15,11 +15,11 @@ use crate::kinematics::assembly::gaps::open_joints;
 use crate::kinematics::assembly::least_squares::holds;
 use crate::kinematics::error::{Error, OpenJoint};
 use crate::kinematics::linear::{Echelon, Row};
-use crate::kinematics::model::{Model, RedundantRows};
 use crate::kinematics::newton::{Limits, SINGULAR};
 use crate::kinematics::path::Path;
+use crate::kinematics::plan::model::{Model, RedundantRows};
 use crate::kinematics::state::State;
-use crate::kinematics::structure::Structure;
+use crate::kinematics::system::structure::Structure;
 
 /// A row is fit to be solved if more than this is left of it; then rows declared later need not
 /// be.

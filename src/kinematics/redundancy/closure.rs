@@ -6,11 +6,11 @@ use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::assembly::part::SMALL_PART;
 use crate::kinematics::assembly::search::{NoBranch, search};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::model::Model;
 use crate::kinematics::newton::SINGULAR;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
-use crate::kinematics::structure::Structure;
 use crate::kinematics::system::Target;
+use crate::kinematics::system::structure::Structure;
 
 /// A row of a block of which no more than this is left, scaled, is superfluous. Such a block is
 /// singular, and closes to the square root of the residual only.

@@ -11,7 +11,7 @@ use crate::kinematics::assembly::nearest::{AN_EQUATION, search_at_once};
 use crate::kinematics::assembly::part::STARTS;
 use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::model::Model;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 
 /// An element with less than this part of the largest residual has no part in the gap.

@@ -6,7 +6,7 @@ use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::Error;
 use crate::kinematics::linear::{Echelon, ReducedRow, Row};
-use crate::kinematics::model::Model;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism};

@@ -10,7 +10,7 @@ use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::{Error, Fit, OpenJoint, OpenPose};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::model::Model;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};

@@ -6,8 +6,8 @@
 
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::constraint::{Gradient, Region};
-use crate::kinematics::model::{ContourRow, Model};
 use crate::kinematics::newton::Rejected;
+use crate::kinematics::plan::model::{ContourRow, Model};
 use crate::kinematics::state::State;
 
 /// The most by which a row may be open between the ends of a sub-step, scaled.

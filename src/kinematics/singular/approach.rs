@@ -5,7 +5,7 @@ use std::fmt;
 use super::lines::{NEARBY, all_that_moves, find_lines};
 use super::near::{LARGEST_BLOCK, NEAR, block_jacobian};
 use crate::kinematics::alignment::Alignment;
-use crate::kinematics::model::Model;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 
 /// A mechanism that has come near a singular position.

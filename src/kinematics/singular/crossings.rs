@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::kinematics::block::{BlockPlan, Crossing, SEAM};
-use crate::kinematics::model::Model;
 use crate::kinematics::newton::Limits;
+use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::{BlockPlan, Crossing, SEAM};
 use crate::kinematics::state::{Pose, State};
 use crate::mechanism::Jet;
 

@@ -3,8 +3,8 @@
 use super::locate::Finding;
 use super::reduced::{Place, ReducedEquation};
 use crate::kinematics::alignment::Alignment;
-use crate::kinematics::block::{Crossing, INNER, Polynomial, divided_differences};
 use crate::kinematics::linear::nan_or_larger;
+use crate::kinematics::plan::{Crossing, INNER, Polynomial, divided_differences};
 use crate::mechanism::{DriverId, Jet};
 
 /// Distance from the point to either end of a crossing at first, and the least one, as turn of the

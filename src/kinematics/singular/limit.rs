@@ -13,12 +13,12 @@
 
 use std::sync::Arc;
 
-use crate::kinematics::block::{BlockCarryover, Crossing};
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::linear::nan_or_larger;
-use crate::kinematics::model::Model;
 use crate::kinematics::newton::Limits;
 use crate::kinematics::path::Rates;
+use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::{BlockCarryover, Crossing};
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Jet, Jet3, MotionInForce, ParameterId};
 

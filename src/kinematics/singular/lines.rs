@@ -10,10 +10,10 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::near::{FREE, LARGEST_BLOCK};
 use crate::kinematics::alignment::{Alignment, Member, Relation};
-use crate::kinematics::configuration::{Configuration, perp};
 use crate::kinematics::constraint::Gradient;
-use crate::kinematics::element::Element;
-use crate::kinematics::model::Model;
+use crate::kinematics::constraint::configuration::{Configuration, perp};
+use crate::kinematics::origin::Element;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::system::System;
 use crate::mechanism::{BodyId, Coordinate, CoordinateKind, DriverId, JointKind, MarkerId};
 

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::kinematics::model::Model;
+use crate::kinematics::plan::model::Model;
 use crate::kinematics::state::State;
 
 /// Most unknowns of a block whose singular positions are located, by dense matrices.

@@ -16,9 +16,9 @@
 use nalgebra::DVector;
 
 use super::upstream::{Line, Upstream, Workspace};
-use crate::kinematics::block::{BlockPlan, BlockSolver};
 use crate::kinematics::linear::{DenseLu, Factors, nan_or_larger};
-use crate::kinematics::model::Model;
+use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::{BlockPlan, BlockSolver};
 use crate::kinematics::state::State;
 use crate::mechanism::Jet;
 

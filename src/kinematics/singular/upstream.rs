@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use crate::kinematics::block::{BlockSolver, BlockState};
-use crate::kinematics::configuration::Configuration;
+use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::newton::Limits;
 use crate::kinematics::path::{Motions, Path, Rates};
+use crate::kinematics::plan::{BlockSolver, BlockState};
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Targets, Values};
 use crate::mechanism::{DriverId, Jet};

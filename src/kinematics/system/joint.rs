@@ -1,7 +1,7 @@
 //! The equations of each kind of joint.
 
 use crate::kinematics::Element;
-use crate::kinematics::configuration::{
+use crate::kinematics::constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId,
 };
 use crate::kinematics::constraint::{

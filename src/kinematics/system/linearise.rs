@@ -6,8 +6,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{System, Targets};
-use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
+use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::linear::Row;
 
 /// The numbers in the equations at one pose.

@@ -6,6 +6,7 @@
 mod joint;
 mod linearise;
 mod parts;
+pub(super) mod structure;
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -13,10 +14,10 @@ use std::sync::Arc;
 use joint::JointParts;
 pub(super) use linearise::{RowValue, Values};
 
-use crate::kinematics::configuration::{Configuration, on_nearest_turn};
+use super::constraint::configuration::{Configuration, on_nearest_turn};
+use super::constraint::moving_configuration::VariedConfiguration;
 use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, TurnEffect};
 use crate::kinematics::linear::nan_or_larger;
-use crate::kinematics::variation::VariedConfiguration;
 use crate::kinematics::{Element, Error};
 use crate::mechanism::{
     DriverId, Expression, Jet, Mechanism, Motion, MovingProfile, Number, ParameterId,

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use petgraph::unionfind::UnionFind;
 
 use super::{Equation, Target};
-use crate::kinematics::configuration::{ROUNDING, extent};
+use crate::kinematics::constraint::configuration::{ROUNDING, extent};
 use crate::kinematics::constraint::{Dimension, Incidence};
 use crate::mechanism::{JointKind, Mechanism, ProfileInForce};
 

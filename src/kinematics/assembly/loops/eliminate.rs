@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 
 use super::form::{Angle, Closure, Form};
 use super::{Loops, MARGIN};
-use crate::kinematics::block::BlockState;
-use crate::kinematics::configuration::on_nearest_turn;
+use crate::kinematics::constraint::configuration::on_nearest_turn;
 use crate::kinematics::constraint::{Axis, Projection, Relation};
+use crate::kinematics::plan::BlockState;
 use crate::mechanism::{Interval, MarkerId, Number};
 
 /// Bound of the error of unknowns found before, scaled.

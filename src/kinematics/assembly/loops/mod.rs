@@ -16,8 +16,8 @@ use eliminate::Builder;
 use form::Closure;
 use nalgebra::DMatrix;
 
-use crate::kinematics::block::BlockState;
-use crate::kinematics::configuration::on_nearest_turn;
+use crate::kinematics::constraint::configuration::on_nearest_turn;
+use crate::kinematics::plan::BlockState;
 use crate::mechanism::{Interval, Number};
 
 /// Most unknowns of a block whose angles are divided into boxes.

@@ -5,10 +5,12 @@ use nalgebra::{Rotation2, Vector2};
 use super::super::definition::Incidence;
 use super::super::point::{angular_velocity, point_velocity};
 use super::super::region::{Region, centripetal_bound};
-use crate::kinematics::configuration::{
+use crate::kinematics::constraint::configuration::{
     Configuration, JointUnknownId, MarkerPose, ProfileId, perp,
 };
-use crate::kinematics::variation::{Moving, VariedMarker, VariedMechanism, quarter_turn, rotate};
+use crate::kinematics::constraint::moving_configuration::{
+    Moving, VariedMarker, VariedMechanism, quarter_turn, rotate,
+};
 use crate::mechanism::{
     Interval, Jet3, MarkerId, Mechanism, Number, ProfileBounds, ProfileInForce,
 };

@@ -9,8 +9,10 @@ use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, speed_bound};
 use super::contour::{AT_THE_POLE, Contour, Shape};
-use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
-use crate::kinematics::variation::{Moving, VariedMechanism, add, dot, quarter_turn, subtract};
+use crate::kinematics::constraint::configuration::{Configuration, MarkerPose, perp};
+use crate::kinematics::constraint::moving_configuration::{
+    Moving, VariedMechanism, add, dot, quarter_turn, subtract,
+};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// The contour's tangent is parallel to the face: c = sin δ with the angle δ from the face, the

@@ -6,8 +6,10 @@ use super::super::definition::{Constraint, Dimension, Formula, Incidence};
 use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
-use crate::kinematics::configuration::{Configuration, ProfileId, perp};
-use crate::kinematics::variation::{Moving, VariedMechanism, direction, subtract};
+use crate::kinematics::constraint::configuration::{Configuration, ProfileId, perp};
+use crate::kinematics::constraint::moving_configuration::{
+    Moving, VariedMechanism, direction, subtract,
+};
 use crate::mechanism::{Jet3, MarkerId, Mechanism};
 
 /// c = ρ − R(θ) with the polar coordinates ρ and θ of the edge in the cam marker's frame.

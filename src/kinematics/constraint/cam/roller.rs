@@ -7,8 +7,10 @@ use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
 use super::contour::{AT_THE_POLE, Contour, Shape};
-use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
-use crate::kinematics::variation::{Moving, VariedMechanism, add, dot, quarter_turn, subtract};
+use crate::kinematics::constraint::configuration::{Configuration, MarkerPose, perp};
+use crate::kinematics::constraint::moving_configuration::{
+    Moving, VariedMechanism, add, dot, quarter_turn, subtract,
+};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · w with the vector e from the contact to the roller's centre, and the contour's tangent

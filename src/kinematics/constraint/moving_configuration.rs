@@ -1,0 +1,388 @@
+//! A moving mechanism on numbers with derivatives.
+//!
+//! Relations are formulas on these numbers, written once for each purpose:
+//!
+//! | number | derivatives | use |
+//! |---|---|---|
+//! | [`Varied`] | in time, each with its change along a direction in the space of drivers and parameters | [`Sensitivity`](crate::kinematics::Sensitivity) |
+//! | [`Enclosed`] | along a sub-step, each enclosed over all of it | the certificate while parameters move |
+
+use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
+use crate::mechanism::{
+    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, MovingProfile, Number,
+    ProfileAlong, Taylor,
+};
+
+/// A quantity with its first two derivatives in time, each with its change along a direction.
+pub type Varied = Taylor<Dual, 2>;
+
+/// Bounds of a quantity and of its derivatives along a sub-step.
+pub type Enclosed = Jet3<Interval>;
+
+/// A number that the quantities of a moving mechanism are made of.
+pub trait Moving: Number {
+    /// The profiles of all cams.
+    type Profiles<'a>: Copy + std::fmt::Debug;
+
+    /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ). Derivatives that do not
+    /// exist are not finite.
+    fn radius(profiles: Self::Profiles<'_>, profile: ProfileId, theta: Self) -> [Self; 2];
+}
+
+impl Moving for Varied {
+    type Profiles<'a> = &'a [ProfileAlong];
+
+    fn radius(profiles: &[ProfileAlong], profile: ProfileId, theta: Self) -> [Self; 2] {
+        of_contour(profiles[profile.0].radius(theta.value), theta)
+    }
+}
+
+/// The profiles of all cams along a sub-step.
+#[derive(Clone, Copy, Debug)]
+pub struct EnclosedProfiles<'a> {
+    /// With the parameters in force at its end.
+    pub in_force: &'a [CamProfile],
+    /// The same with parameters that may move; empty if none does.
+    pub moving: &'a [MovingProfile],
+}
+
+impl Moving for Enclosed {
+    type Profiles<'a> = EnclosedProfiles<'a>;
+
+    fn radius(profiles: EnclosedProfiles<'_>, profile: ProfileId, theta: Self) -> [Self; 2] {
+        let EnclosedProfiles { in_force, moving } = profiles;
+        let in_force = &in_force[profile.0].in_force;
+        if let Some(moving) = moving.get(profile.0).filter(|profile| profile.moves()) {
+            return (moving.radius(in_force, theta)).unwrap_or([Self::unknown(); 2]);
+        }
+        let middle = theta.value.midpoint();
+        let reach = (theta.value - Interval::point(middle)).magnitude();
+        let Some(bounds) = in_force.bounds(middle, reach) else {
+            return [Self::unknown(); 2];
+        };
+        let mut radius = bounds.radius;
+        if bounds.jumps {
+            radius.derivatives[2] = Interval::unknown();
+        }
+        of_contour(radius, theta)
+    }
+}
+
+/// Bounds eight times the distance of a quantity along a sub-step from its chord: by its second
+/// derivative, at a corner by the range of the first one, at a jump by its own range.
+pub(in crate::kinematics) fn bend(quantity: &Enclosed) -> f64 {
+    let width = |range: Interval| range.high - range.low;
+    if quantity.second().is_finite() {
+        quantity.second().magnitude()
+    } else if quantity.first().is_finite() {
+        2.0 * width(quantity.first())
+    } else {
+        8.0 * width(quantity.value)
+    }
+}
+
+/// Returns R(θ) and R′(θ) for a moving θ, from R and its derivatives with respect to θ.
+fn of_contour<S: Number, const N: usize>(
+    radius: Jet3<S>,
+    theta: Taylor<S, N>,
+) -> [Taylor<S, N>; 2] {
+    let [r_1, r_2, r_3] = radius.derivatives;
+    [
+        theta.chain(radius.value, |_| [r_1, r_2, r_3]),
+        theta.chain(r_1, |_| [r_2, r_3, S::unknown()]),
+    ]
+}
+
+/// A marker in a moving mechanism.
+#[derive(Clone, Copy, Debug)]
+pub struct VariedMarker<N = Varied> {
+    /// P \[m\].
+    pub point: [N; 2],
+    /// u, the marker's x-axis.
+    pub axis: [N; 2],
+    /// theta, its direction \[rad\].
+    pub theta: N,
+}
+
+/// A marker in its body's frame.
+#[derive(Clone, Copy, Debug)]
+struct VariedFrame<N> {
+    body: Option<BodyId>,
+    position: [N; 2],
+    angle: N,
+    axis: [N; 2],
+}
+
+/// The bodies of a moving mechanism: the counterpart of [`Configuration`](crate::kinematics::Configuration).
+#[derive(Clone, Debug)]
+pub struct VariedConfiguration<N = Varied> {
+    frames: Vec<VariedFrame<N>>,
+    coefficients: Vec<N>,
+    bodies: usize,
+    /// The generalized coordinates, then the joint unknowns.
+    q: Vec<N>,
+    /// The x-axes of the bodies, which follow from q.
+    axes: Vec<[N; 2]>,
+}
+
+/// A moving mechanism, as relations read it.
+#[derive(Debug)]
+pub struct VariedMechanism<'a, 'p, N: Moving = Varied> {
+    /// Its bodies.
+    pub bodies: &'a VariedConfiguration<N>,
+    /// The profiles of its cams.
+    pub profiles: N::Profiles<'p>,
+}
+
+impl<N> Default for VariedConfiguration<N> {
+    /// Makes a mechanism without bodies.
+    fn default() -> Self {
+        Self {
+            frames: Vec::new(),
+            coefficients: Vec::new(),
+            bodies: 0,
+            q: Vec::new(),
+            axes: Vec::new(),
+        }
+    }
+}
+
+impl<N: Number> VariedConfiguration<N> {
+    /// Makes a mechanism at rest at the origin, whose parameters are all zero.
+    pub(in crate::kinematics) fn new(
+        mechanism: &Mechanism,
+        coefficients: &[Coefficient],
+        unknowns: usize,
+    ) -> Self {
+        let zero = N::constant(0.0);
+        let axis = [N::constant(1.0), zero];
+        let frames = mechanism.markers.iter().map(|marker| VariedFrame {
+            body: marker.body,
+            position: [zero; 2],
+            angle: zero,
+            axis,
+        });
+        let bodies = mechanism.bodies.len();
+        let mut origin = Self {
+            frames: frames.collect(),
+            coefficients: vec![zero; coefficients.len()],
+            bodies,
+            q: vec![zero; unknowns],
+            axes: vec![axis; bodies],
+        };
+        let parameters = vec![zero; mechanism.parameters.len()];
+        let at_zero = |expression: &Expression| Some(evaluate(expression, &parameters));
+        origin.set_numbers(mechanism, coefficients, &at_zero);
+        origin
+    }
+
+    /// Sets the numbers in the relations to those that `value` gives; the others stay. Allocates
+    /// nothing.
+    pub(in crate::kinematics) fn set_numbers(
+        &mut self,
+        mechanism: &Mechanism,
+        coefficients: &[Coefficient],
+        value: &dyn Fn(&Expression) -> Option<N>,
+    ) {
+        for (frame, marker) in self.frames.iter_mut().zip(&mechanism.markers) {
+            for (s, expression) in frame.position.iter_mut().zip(&marker.position) {
+                if let Some(value) = value(expression) {
+                    *s = value;
+                }
+            }
+            if let Some(angle) = value(&marker.angle) {
+                frame.angle = angle;
+                frame.axis = direction(angle);
+            }
+        }
+        for (number, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
+            if let Some(value) = value(&coefficient.expression) {
+                *number = value;
+            }
+        }
+    }
+
+    /// Returns q\[column\].
+    #[must_use]
+    pub fn coordinate(&self, column: usize) -> N {
+        self.q[column]
+    }
+
+    /// Sets q\[column\].
+    pub(in crate::kinematics) fn set_coordinate(&mut self, column: usize, q: N) {
+        self.q[column] = q;
+        if column < 3 * self.bodies && column % 3 == 2 {
+            self.axes[column / 3] = direction(q);
+        }
+    }
+
+    /// Returns a marker's point and angle in its body's frame.
+    pub(in crate::kinematics) fn local(&self, marker: MarkerId) -> ([N; 2], N) {
+        let frame = &self.frames[marker.index()];
+        (frame.position, frame.angle)
+    }
+
+    /// Returns a marker.
+    #[must_use]
+    pub fn marker(&self, marker: MarkerId) -> VariedMarker<N> {
+        let VariedFrame {
+            body,
+            position,
+            angle,
+            axis,
+        } = self.frames[marker.index()];
+        let Some(body) = body.map(BodyId::index) else {
+            return VariedMarker {
+                point: position,
+                axis,
+                theta: angle,
+            };
+        };
+        let (k, turn) = (3 * body, self.axes[body]);
+        VariedMarker {
+            point: add([self.q[k], self.q[k + 1]], turned(turn, position)),
+            axis: turned(turn, axis),
+            theta: self.q[k + 2] + angle,
+        }
+    }
+
+    /// Returns a body's angle \[rad\], zero for ground.
+    #[must_use]
+    pub fn phi(&self, body: Option<BodyId>) -> N {
+        body.map_or(N::constant(0.0), |body| self.q[3 * body.index() + 2])
+    }
+
+    /// Returns a coefficient.
+    #[must_use]
+    pub fn coefficient(&self, id: CoefficientId) -> N {
+        self.coefficients[id.0]
+    }
+
+    /// Returns a joint unknown.
+    #[must_use]
+    pub fn joint_unknown(&self, id: JointUnknownId) -> N {
+        self.q[3 * self.bodies + id.0]
+    }
+}
+
+impl VariedConfiguration<Enclosed> {
+    /// Sets the numbers in the relations to those of another mechanism, at rest anywhere in their
+    /// ranges. Allocates nothing.
+    pub(in crate::kinematics) fn rest_at_numbers_of(&mut self, other: &Self) {
+        let still = |number: Enclosed| Enclosed::fixed(number.value);
+        for (frame, from) in self.frames.iter_mut().zip(&other.frames) {
+            frame.position = from.position.map(still);
+            frame.angle = still(from.angle);
+            frame.axis = from.axis.map(still);
+        }
+        for (number, from) in self.coefficients.iter_mut().zip(&other.coefficients) {
+            *number = still(*from);
+        }
+    }
+}
+
+impl VariedConfiguration {
+    /// Returns the mechanism at rest, with the values that it has.
+    pub(in crate::kinematics) fn at_rest(&self) -> Self {
+        let mut still = self.clone();
+        for column in 0..still.q.len() {
+            still.set_coordinate(column, Varied::fixed(still.q[column].value));
+        }
+        still
+    }
+
+    /// Sets the changes of q (order 0), q̇ (order 1) or q̈ (order 2) along the direction.
+    pub(in crate::kinematics) fn change(&mut self, order: usize, changes: &[f64]) {
+        self.take_changes(order, |column| Some(changes[column]));
+    }
+
+    /// Sets those changes that `change` returns for a column.
+    pub(in crate::kinematics) fn take_changes(
+        &mut self,
+        order: usize,
+        change: impl Fn(usize) -> Option<f64>,
+    ) {
+        for column in 0..self.q.len() {
+            let Some(change) = change(column) else {
+                continue;
+            };
+            let mut q = self.q[column];
+            let coefficient = match order {
+                0 => &mut q.value,
+                _ => &mut q.derivatives[order - 1],
+            };
+            coefficient.derivatives = [change];
+            self.set_coordinate(column, q);
+        }
+    }
+
+    /// Returns the change of q\[column\] or of its derivative of this order.
+    pub(in crate::kinematics) fn change_of(&self, order: usize, column: usize) -> f64 {
+        let q = &self.q[column];
+        [q.value, q.first(), q.second()][order].first()
+    }
+}
+
+impl<N: Moving> std::ops::Deref for VariedMechanism<'_, '_, N> {
+    type Target = VariedConfiguration<N>;
+
+    fn deref(&self) -> &Self::Target {
+        self.bodies
+    }
+}
+
+impl<N: Moving> VariedMechanism<'_, '_, N> {
+    /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ).
+    #[must_use]
+    pub fn radius(&self, profile: ProfileId, theta: N) -> [N; 2] {
+        N::radius(self.profiles, profile, theta)
+    }
+}
+
+/// Returns the value of an expression without time.
+// Inlined, it would be many times in the libraries of FMUs.
+#[inline(never)]
+pub(in crate::kinematics) fn evaluate<N: Number>(expression: &Expression, parameters: &[N]) -> N {
+    expression.evaluate(&|p| parameters[p.index()], N::constant(0.0))
+}
+
+/// Returns the unit vector at an angle \[rad\].
+#[must_use]
+pub fn direction<N: Number>(theta: N) -> [N; 2] {
+    [theta.cos(), theta.sin()]
+}
+
+/// Returns a vector turned by an angle.
+#[must_use]
+pub fn rotate<N: Number>(angle: N, vector: [N; 2]) -> [N; 2] {
+    turned(direction(angle), vector)
+}
+
+/// Returns a vector turned as the x-axis is to the unit vector (cos, sin).
+fn turned<N: Number>([cos, sin]: [N; 2], [x, y]: [N; 2]) -> [N; 2] {
+    [cos * x - sin * y, sin * x + cos * y]
+}
+
+/// Returns a vector turned by a quarter turn.
+#[must_use]
+pub fn quarter_turn<N: Number>([x, y]: [N; 2]) -> [N; 2] {
+    [-y, x]
+}
+
+/// Returns a + b.
+#[must_use]
+pub fn add<N: Number>(a: [N; 2], b: [N; 2]) -> [N; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+/// Returns a − b.
+#[must_use]
+pub fn subtract<N: Number>(a: [N; 2], b: [N; 2]) -> [N; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// Returns a · b.
+#[must_use]
+pub fn dot<N: Number>(a: [N; 2], b: [N; 2]) -> N {
+    a[0] * b[0] + a[1] * b[1]
+}

@@ -1,0 +1,187 @@
+//! Storage and limits of the contraction test η + K r < r of a block.
+
+use super::equations::{ColumnOwner, ENTRIES, Jacobian};
+use crate::kinematics::constraint::configuration::BodyPose;
+use crate::kinematics::linear::{Condition, Lu};
+use crate::kinematics::plan::elimination::EliminationOrder;
+use crate::kinematics::plan::step::BlockState;
+use crate::kinematics::system::{System, Target};
+
+/// Most torn unknowns of which the inverse is written down.
+pub(super) const MOST_TORN: usize = 32;
+/// Safety factor on the next trial radii, where those tried were too small.
+pub(super) const ROOM: f64 = 1.25;
+/// Most radii that are tried.
+pub(super) const MOST_TRIES: u32 = 4;
+/// The norm of K above which no larger radii are tried, but smaller ones once. K grows with the
+/// sub-step.
+pub(super) const LARGEST_CONTRACTION: f64 = 0.9;
+/// η + K r stays below this part of r: the rounding of A changes it by less than the rest.
+pub(super) const STRICTLY: f64 = 0.999;
+
+/// Storage of the contraction test of a block.
+#[derive(Debug)]
+pub(super) struct ContractionTest {
+    /// Unknowns of earlier blocks in the rows.
+    pub(super) known: Vec<usize>,
+    /// Drivers whose values rows of the block are held at.
+    pub(super) drivers: Vec<usize>,
+    /// The bodies of these and of the block's own unknowns, with their frames at the end.
+    bodies: Vec<usize>,
+    ends: Vec<BodyPose>,
+    /// The joint unknowns among them, with their values at the end.
+    joint_unknowns: Vec<usize>,
+    joint_ends: Vec<f64>,
+    /// The Jacobian in the middle of the chord.
+    pub(super) middle: Jacobian,
+    /// A by rows, empty where it is too large.
+    pub(super) inverse: Vec<f64>,
+    /// Storage of the estimate, where A is too large.
+    pub(super) estimate: Estimate,
+    pub(super) condition: Condition,
+    /// Bound of the rows' values on the way, and the part of it from rounding.
+    pub(super) open: Vec<f64>,
+    pub(super) slack: Vec<f64>,
+    /// Whether parameters move numbers in the rows.
+    pub(super) moves: bool,
+    /// Estimate of the values of rows of a block without an inverse while parameters move.
+    pub(super) moved: Vec<f64>,
+    /// Bounds of the change of the Jacobian's entries: row, column, scaled value.
+    pub(super) changes: Vec<(usize, usize, f64)>,
+    /// Scaled radii: of known unknowns, the trial radii r, and η + K r.
+    pub(super) known_radii: Vec<f64>,
+    pub(super) radii: Vec<f64>,
+    pub(super) eta: Vec<f64>,
+    pub(super) next: Vec<f64>,
+    /// Work space.
+    pub(super) row: Vec<f64>,
+}
+
+/// Storage of the estimate that replaces the inverse of a large block.
+#[derive(Debug, Default)]
+pub(super) struct Estimate {
+    /// J where the rows were evaluated last minus J where the block is factorised: row, column,
+    /// value.
+    pub(super) drift: Vec<(usize, usize, f64)>,
+    /// F where the rows were evaluated last.
+    pub(super) gap: Vec<f64>,
+    /// The rows that depend on the contour of a cam, with their unknowns.
+    pub(super) contours: Vec<(usize, Vec<usize>)>,
+}
+
+/// Returns the rows of a block that depend on the contour of a cam, with their unknowns.
+fn contour_rows(system: &System, rows: &[usize]) -> Vec<(usize, Vec<usize>)> {
+    let contours = rows
+        .iter()
+        .enumerate()
+        .filter(|(_, row)| system.equations()[**row].constraint.has_contour());
+    let with_unknowns = contours.map(|(local, &row)| {
+        let mut unknowns = system.incidence(row).unknowns;
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        (local, unknowns)
+    });
+    with_unknowns.collect()
+}
+
+impl ContractionTest {
+    /// Makes the storage for the block with index `block`.
+    pub(super) fn new(
+        system: &System,
+        order: &EliminationOrder,
+        lu: &Lu,
+        owners: &[ColumnOwner],
+        block: usize,
+    ) -> Self {
+        let n = order.rows.len();
+        let rows = order.rows.iter();
+        let mut known: Vec<_> = rows
+            .flat_map(|&row| system.incidence(row).unknowns)
+            .filter(|&column| owners[column].block != block)
+            .collect();
+        known.sort_unstable();
+        known.dedup();
+        let of_bodies = 3 * system.mechanism().bodies.len();
+        let moving = || order.columns.iter().chain(&known).copied();
+        let mut bodies: Vec<_> = moving().filter(|&k| k < of_bodies).map(|k| k / 3).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let joint_unknowns: Vec<_> = moving().filter(|&k| k >= of_bodies).collect();
+        let drivers = order.rows.iter();
+        let drivers = drivers.filter_map(|&row| match system.equations()[row].target {
+            Target::Driver(driver) => Some(driver.index()),
+            Target::Constant(_) => None,
+        });
+        let (inverse, estimate) = if order.torn() <= MOST_TORN {
+            (n * n, Estimate::default())
+        } else {
+            let estimate = Estimate {
+                drift: Vec::with_capacity(ENTRIES * n),
+                gap: vec![0.0; n],
+                contours: contour_rows(system, &order.rows),
+            };
+            (0, estimate)
+        };
+        Self {
+            known_radii: vec![0.0; known.len()],
+            known,
+            drivers: drivers.collect(),
+            ends: Vec::with_capacity(bodies.len()),
+            bodies,
+            joint_ends: vec![0.0; joint_unknowns.len()],
+            joint_unknowns,
+            middle: Jacobian::new(lu.clone()),
+            inverse: vec![0.0; inverse],
+            estimate,
+            condition: Condition::new(n),
+            open: vec![0.0; n],
+            slack: vec![0.0; n],
+            moves: false,
+            moved: vec![0.0; n],
+            changes: Vec::with_capacity(ENTRIES * n),
+            radii: vec![0.0; n],
+            eta: vec![0.0; n],
+            next: vec![0.0; n],
+            row: vec![0.0; n],
+        }
+    }
+
+    pub(super) fn forget_pivots(&mut self) {
+        self.middle.lu.forget_pivots();
+    }
+
+    /// Takes over the pivots of the block's own matrix.
+    pub(super) fn choose_pivots(&mut self, lu: &Lu) {
+        self.middle.lu.clone_from(lu);
+    }
+
+    /// Notes the ends of the bodies and joint unknowns.
+    pub(super) fn note_ends(&mut self, state: &BlockState<'_>) {
+        let frames = state.at.frames();
+        self.ends.clear();
+        self.ends
+            .extend(self.bodies.iter().map(|&body| frames[body]));
+        for (end, &column) in self.joint_ends.iter_mut().zip(&self.joint_unknowns) {
+            *end = state.at.coordinate(column);
+        }
+    }
+
+    /// Puts the bodies and joint unknowns back to their ends.
+    pub(super) fn return_to_ends(&self, state: &mut BlockState<'_>) {
+        for (&body, &end) in self.bodies.iter().zip(&self.ends) {
+            state.at.frames_mut()[body] = end;
+        }
+        for (&column, &end) in self.joint_unknowns.iter().zip(&self.joint_ends) {
+            state.at.set_coordinate(column, end);
+        }
+    }
+
+    /// Adds |A| b to `sum`, b ≥ 0 having one entry per row.
+    pub(super) fn apply(&self, b: &[f64], sum: &mut [f64]) {
+        let rows = self.inverse.chunks_exact(b.len());
+        for (sum, row) in sum.iter_mut().zip(rows) {
+            let parts = row.iter().zip(b).map(|(a, b)| a.abs() * b);
+            *sum += parts.sum::<f64>();
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The estimate that replaces the certificate of a block whose inverse is too large to be written
+//! down.
+//!
+//! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds only the change of
+//! the Jacobian within the radii, which are of second order in the sub-step. Its change along the
+//! chord only tells how much larger A(s) may be than A = J⁻¹ at the end of the sub-step:
+//!
+//! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J)|, in the largest norm.
+//!
+//! The links of a long row of loops all turn alike: their changes in A J have signs and cancel,
+//! while bounds of them would add up with the square of the row's length. So c comes from the
+//! Jacobian itself where it differs most, at the far end of the chord, and the values of the rows
+//! on the chord come from their values in its middle. One radius r serves all unknowns, and the
+//! test is
+//!
+//! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all other bounds of the rows).
+//!
+//! Norms are estimated from below, and one place represents the whole chord. The factor [`MARGIN`]
+//! allows for both, and the sub-step is *checked*, not proved.
+//!
+//! A contour may have a lobe or a notch anywhere between two places. The rows that depend on one
+//! are bounded over the whole chord: an eighth of the second derivative along it is the value that
+//! it leaves them, and their gradients differ from those at its end by at most twice their change
+//! around its middle.
+
+use super::CoupledBlock;
+use super::contraction::{
+    ContractionTest, Estimate, LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY,
+};
+use crate::kinematics::linear::{Factors, nan_or_larger};
+use crate::kinematics::newton::STALLED;
+use crate::kinematics::plan::step::{BlockState, Step};
+use crate::kinematics::system::Target;
+
+/// Safety factor on estimates.
+const MARGIN: f64 = 2.0;
+
+/// The result of a test that was passed.
+pub(super) struct Passed {
+    /// r, and the radius of the motion around the chord, both scaled.
+    pub(super) radius: f64,
+    pub(super) next: f64,
+    /// The sum of c and the norm of K.
+    pub(super) contraction: f64,
+}
+
+impl CoupledBlock {
+    /// Looks for a radius that passes the test and leaves it in `next`. Returns the sum of c and
+    /// the norm of K. Moves the bodies from the end of the sub-step, where the block is factorised,
+    /// to its middle.
+    ///
+    /// # Errors
+    ///
+    /// Without such a radius the sum of c and the norm of K, if they are known.
+    pub(super) fn estimate_radii(
+        &mut self,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
+    ) -> Result<f64, Option<f64>> {
+        step.bounds.checked = true;
+        self.lay_chord(state, step);
+        self.move_to_chord(state, step, 0.0);
+        self.evaluate_rows(state);
+        let drift = self.drift();
+        let passed = self.test_chord(state, step, [drift, 0.0], ROOM)?;
+        self.test.next.fill(passed.next);
+        Ok(passed.contraction)
+    }
+
+    /// Tests the chord of `step` and moves the bodies to its middle. `drift` is the norm of A times
+    /// the change of the Jacobian at the far end of the chord, `astray` a bound of the distance of
+    /// that end from the motion, scaled; the first trial radius is `room` times the distance of
+    /// the chord from the motion.
+    ///
+    /// # Errors
+    ///
+    /// If the test fails, the sum of c and the norm of K, if they are known.
+    pub(super) fn test_chord(
+        &mut self,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
+        [drift, astray]: [f64; 2],
+        room: f64,
+    ) -> Result<Passed, Option<f64>> {
+        let drift = MARGIN * drift;
+        if drift.is_nan() {
+            return Err(None);
+        }
+        if drift >= LARGEST_CONTRACTION {
+            return Err(Some(drift));
+        }
+        self.move_to_chord(state, step, 0.5);
+        self.evaluate_rows(state);
+        let test = &mut *self.test;
+        for ((slack, rounding), moved) in test.slack.iter_mut().zip(&test.row).zip(&test.moved) {
+            *slack += rounding + moved;
+        }
+        let larger = 1.0 / (1.0 - drift);
+        let gap = larger * MARGIN * (self.farthest() + astray);
+        let mut radius = room * gap + f64::EPSILON;
+        let mut last = None;
+        for _ in 0..MOST_TRIES {
+            let [open, change] = self.bend_around(state, step, radius).ok_or(last)?;
+            let next = gap + larger * (open + change);
+            let contraction = drift + larger * change / radius;
+            if contraction.is_nan() {
+                return Err(None);
+            }
+            if next <= STRICTLY * radius {
+                return Ok(Passed {
+                    radius,
+                    next,
+                    contraction,
+                });
+            }
+            if contraction >= LARGEST_CONTRACTION {
+                return Err(Some(contraction));
+            }
+            last = Some(contraction);
+            radius = ROOM * next / (1.0 - contraction);
+        }
+        Err(Some(1.0))
+    }
+
+    /// Evaluates the rows at the pose in `state` without touching the factors; bounds of their
+    /// rounding go to `row`.
+    pub(super) fn evaluate_rows(&mut self, state: &BlockState<'_>) {
+        let Self {
+            equations, test, ..
+        } = self;
+        let ContractionTest {
+            middle,
+            estimate: Estimate { gap, .. },
+            row: rounding,
+            ..
+        } = &mut **test;
+        equations.evaluate(state, middle, |local, value| {
+            let target = &state.system.equations()[equations.rows[local]].target;
+            gap[local] = match target {
+                Target::Constant(_) => value.value,
+                // The driver is at its end; `bend_around` adds its chord.
+                Target::Driver(_) => 0.0,
+            };
+            // The rounding of the rows at both ends of a chord.
+            rounding[local] = 2.0 * STALLED * value.rounding;
+        });
+    }
+
+    /// Returns the norm of A times the change of the Jacobian where the rows were evaluated last.
+    pub(super) fn drift(&mut self) -> f64 {
+        let ContractionTest {
+            condition,
+            middle,
+            estimate: Estimate { drift, .. },
+            ..
+        } = &mut *self.test;
+        drift.clear();
+        drift.extend(middle.lu.differences(&self.jacobian.lu));
+        condition.largest_row_of_product(&mut self.jacobian.lu, drift)
+    }
+
+    /// Returns the largest component of A F where the rows were evaluated last.
+    pub(super) fn farthest(&mut self) -> f64 {
+        let gap = &mut self.test.estimate.gap;
+        self.jacobian.lu.solve(gap);
+        gap.iter()
+            .fold(0.0, |most, value| nan_or_larger(most, value.abs()))
+    }
+
+    /// Returns bounds of |A| times the values of the rows apart from F in the middle, and of |A|
+    /// times the change of their gradients within this radius, times the radius.
+    fn bend_around(
+        &mut self,
+        state: &BlockState<'_>,
+        step: &mut Step<'_>,
+        radius: f64,
+    ) -> Option<[f64; 2]> {
+        let Self {
+            equations,
+            test,
+            jacobian,
+            ..
+        } = self;
+        let bounds = &mut *step.bounds;
+        let size = state.at.size();
+        let scale = |column: usize| state.system.column_scale(column, size);
+        for &column in &equations.columns {
+            bounds.region[column] = radius * scale(column);
+        }
+        for (&column, radius) in test.known.iter().zip(&test.known_radii) {
+            bounds.region[column] = radius * scale(column);
+        }
+        let around = |column: usize| match test.known.binary_search(&column) {
+            Ok(place) => test.known_radii[place] * scale(column),
+            Err(_) => radius * scale(column),
+        };
+        let mut contours = test.estimate.contours.iter().peekable();
+        for local in 0..equations.rows.len() {
+            let contour = contours.next_if(|(row, _)| *row == local);
+            let (mut open, mut change) = (test.slack[local], 0.0);
+            let bend = match contour {
+                None => equations.bend(local, state, bounds, false)?,
+                Some((_, columns)) => {
+                    for &column in columns {
+                        bounds.region[column] = around(column) + 0.5 * bounds.chord[column].abs();
+                    }
+                    let bend = equations.bend(local, state, bounds, false);
+                    for &column in columns {
+                        bounds.region[column] = around(column);
+                    }
+                    let bend = bend?;
+                    open += 0.125 * bend.along;
+                    bend
+                }
+            };
+            let differs = if contour.is_some() { 2.0 } else { 1.0 };
+            if let Target::Driver(driver) = state.system.equations()[equations.rows[local]].target {
+                open += 0.125 * bend.along + bounds.drivers[driver.index()] * bend.row_scale;
+            }
+            for (column, value) in bend.changes() {
+                let value = differs * value * scale(column);
+                if equations.own(column).is_some() {
+                    change += value * radius;
+                } else if let Ok(place) = test.known.binary_search(&column) {
+                    open += value * test.known_radii[place];
+                }
+            }
+            (test.open[local], test.row[local]) = (open, change);
+        }
+        for entry in &test.middle.upstream {
+            if let Ok(place) = test.known.binary_search(&entry.column) {
+                test.open[entry.row] += entry.value.abs() * test.known_radii[place];
+            }
+        }
+        let ContractionTest {
+            condition,
+            open,
+            row,
+            ..
+        } = &mut **test;
+        let lu = &mut jacobian.lu;
+        Some([&*open, &*row].map(|b| MARGIN * condition.largest_row(lu, b)))
+    }
+}

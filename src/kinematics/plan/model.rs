@@ -1,0 +1,147 @@
+//! The model of a mechanism: its equations, their structure, and the plan that solves them.
+
+use std::sync::Arc;
+
+use super::BlockPlan;
+use crate::kinematics::constraint::configuration::Configuration;
+use crate::kinematics::constraint::{Constraint, of_coordinate};
+use crate::kinematics::system::structure::{Block, Structure};
+use crate::kinematics::system::{System, Target, Targets};
+use crate::mechanism::{DriverId, Mechanism};
+
+/// The equations of a mechanism and the way in which they are solved.
+#[derive(Debug)]
+pub(in crate::kinematics) struct Model {
+    pub(in crate::kinematics) system: System,
+    pub(in crate::kinematics) structure: Structure,
+    pub(in crate::kinematics) plan: BlockPlan,
+    pub(in crate::kinematics) redundant: RedundantRows,
+    pub(in crate::kinematics) measures: Vec<Box<dyn Constraint>>,
+}
+
+/// The rows of Phi that are redundant, and those set aside instead of them.
+#[derive(Clone, Debug, Default)]
+pub(in crate::kinematics) struct RedundantRows {
+    /// Rows that follow from the others, of equals the ones declared last; ascending.
+    pub(in crate::kinematics) all: Vec<usize>,
+    /// The rows set aside at the first pose, as many; ascending. Assembly returns to them.
+    pub(in crate::kinematics) first: Vec<usize>,
+    /// The rows set aside at present, as many; ascending.
+    pub(in crate::kinematics) now: Vec<usize>,
+    /// Those of them that depend on the contour of a cam.
+    pub(in crate::kinematics) contour_rows: Vec<ContourRow>,
+}
+
+/// A row that depends on the contour of a cam, its own or one that moves its bodies.
+#[derive(Clone, Debug)]
+pub(in crate::kinematics) struct ContourRow {
+    pub(in crate::kinematics) row: usize,
+    /// The unknowns in it.
+    pub(in crate::kinematics) columns: Vec<usize>,
+}
+
+impl RedundantRows {
+    /// Returns whether no row is set aside.
+    pub(in crate::kinematics) fn is_empty(&self) -> bool {
+        self.now.is_empty()
+    }
+}
+
+impl Model {
+    /// Writes down the equations and analyses their structure. Also returns whether equations and
+    /// unknowns pair up; otherwise the plan is empty.
+    pub(in crate::kinematics) fn new(mechanism: Arc<Mechanism>) -> (Self, bool) {
+        let measures = mechanism.measures.iter();
+        let measures = measures.map(|measure| of_coordinate(&measure.coordinate));
+        let measures = measures.collect();
+        let system = System::new(mechanism);
+        let structure = Structure::new(&system, &[]);
+        let pairs_up = structure.is_some();
+        let structure = structure.unwrap_or_else(|| Structure::of_nothing(&system));
+        let model = Self {
+            plan: BlockPlan::new(&system, &structure),
+            structure,
+            redundant: RedundantRows::default(),
+            measures,
+            system,
+        };
+        (model, pairs_up)
+    }
+
+    /// Compiles structure and plan for all rows but those set aside.
+    pub(in crate::kinematics) fn compile(&mut self, at: &Configuration, targets: &Targets) {
+        let structure = Structure::new(&self.system, &self.redundant.now);
+        self.structure = structure.expect("independent rows can be paired with unknowns");
+        self.redundant.contour_rows = self.contour_rows();
+        self.plan = BlockPlan::new(&self.system, &self.structure);
+        self.plan.set_parameters(&self.system, at, targets);
+    }
+
+    /// Sets other rows aside, as many. Returns false, and changes nothing, if the rest cannot be
+    /// paired with unknowns. The plan has to be compiled then.
+    pub(in crate::kinematics) fn set_aside(&mut self, rows: &[usize]) -> bool {
+        let now = &mut self.redundant.now;
+        let fits = rows.len() == now.len()
+            && rows.is_sorted_by(|a, b| a < b)
+            && Structure::new(&self.system, rows).is_some();
+        if fits {
+            now.copy_from_slice(rows);
+        }
+        fits
+    }
+
+    /// Returns the rows set aside that depend on the contour of a cam.
+    fn contour_rows(&self) -> Vec<ContourRow> {
+        let equations = self.system.equations();
+        let has_contour = |row: &usize| equations[*row].constraint.has_contour();
+        if !(0..equations.len()).any(|row| has_contour(&row)) {
+            return Vec::new();
+        }
+        let rows = self.redundant.now.iter().map(|&row| ContourRow {
+            row,
+            columns: self.system.incidence(row).unknowns,
+        });
+        let depends = |ContourRow { row, columns }: &ContourRow| {
+            let mut rows = self
+                .blocks_behind(columns)
+                .into_iter()
+                .flat_map(|b| &b.rows);
+            has_contour(row) || rows.any(has_contour)
+        };
+        rows.filter(depends).collect()
+    }
+
+    /// Returns the blocks that find these unknowns, and all that they read.
+    pub(in crate::kinematics) fn blocks_behind(&self, columns: &[usize]) -> Vec<&Block> {
+        let blocks = self.structure.blocks();
+        let mut seen = vec![false; blocks.len()];
+        let mut open: Vec<_> = columns
+            .iter()
+            .map(|&c| self.structure.block_of(c))
+            .collect();
+        let mut found = Vec::new();
+        while let Some(block) = open.pop() {
+            if !std::mem::replace(&mut seen[block], true) {
+                found.push(&blocks[block]);
+                open.extend(&blocks[block].reads);
+            }
+        }
+        found
+    }
+
+    /// Returns the one driver that moves a block and all that it reads; `None` if there are more or
+    /// none.
+    pub(in crate::kinematics) fn only_driver(&self, block: usize) -> Option<DriverId> {
+        let mut only = None;
+        for block in self.blocks_behind(self.plan.blocks[block].columns()) {
+            for &row in &block.rows {
+                if let Target::Driver(driver) = self.system.equations()[row].target
+                    && only.replace(driver).is_some_and(|other| other != driver)
+                {
+                    return None;
+                }
+            }
+        }
+        only
+    }
+}

@@ -1,0 +1,233 @@
+//! Rates and forces at the pose of a solver.
+
+use super::output::{Output, OutputSource};
+use crate::kinematics::analysis::Direction;
+use crate::kinematics::error::Error;
+use crate::kinematics::forces::{
+    ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff,
+};
+use crate::kinematics::path::Rates;
+use crate::kinematics::solver::Solver;
+use crate::mechanism::{DriverId, Jet};
+
+/// The rates at the pose of a [`Solver`] and, where they are [sought](Self::seek_forces), the
+/// forces.
+///
+/// ```
+/// use biela::kinematics::{ForceQuantity, Path, Solution, Solver};
+/// use biela::mechanism::{DriverId, Mechanism, Source};
+///
+/// // An arm of 2 kg that lies level, its centre of mass 0.3 m from the pivot.
+/// let text = r#"
+/// format = 1
+/// name = "arm"
+/// [bodies.arm]
+/// mass = 2
+/// center = [0.3, 0]
+/// markers = { O = [0, 0] }
+/// [ground.markers]
+/// O = [0, 0]
+/// [joints.pivot]
+/// type = "revolute"
+/// markers = ["ground.O", "arm.O"]
+/// [drivers.theta]
+/// coordinate = "angle"
+/// markers = ["ground.O", "arm.O"]
+/// start = 0
+/// "#;
+/// let (mechanism, _) = Mechanism::parse(&Source::new("arm.toml", text)).unwrap();
+/// let path = Path::new(&mechanism);
+/// let mut solver = Solver::assembled(mechanism.into(), &path).unwrap();
+/// let mut solution = Solution::new(&solver);
+/// solution.seek_forces(&solver);
+/// solution.solve(&mut solver).unwrap();
+/// let torque = solution.force(ForceQuantity::Effort(DriverId(0)));
+/// assert!((torque - 2.0 * 9.81 * 0.3).abs() < 1e-14);
+/// ```
+#[derive(Debug)]
+pub struct Solution {
+    /// Rates of q.
+    pub rates: Rates,
+    /// Value, velocity and acceleration of each driver, for which rates and forces are solved.
+    pub driver_rates: Vec<Jet>,
+    /// Sizes of the forces that are inputs \[SI\], in the order of their variables; empty unless
+    /// forces are sought.
+    pub loads: Vec<f64>,
+    forces: Option<Forces>,
+    /// The parts of the forces that are sought.
+    parts: ForceParts,
+    /// Whether each contact pulls.
+    lifted: Vec<bool>,
+}
+
+impl Solution {
+    /// Makes the storage for a solver's mechanism; all drivers are at rest.
+    #[must_use]
+    pub fn new(solver: &Solver) -> Self {
+        let pose = solver.pose();
+        Self {
+            rates: Rates::new(pose.q.len()),
+            driver_rates: pose.drivers.iter().map(|u| Jet::constant(*u)).collect(),
+            loads: Vec::new(),
+            forces: None,
+            parts: ForceParts::ALL,
+            lifted: Vec::new(),
+        }
+    }
+
+    /// Seeks forces too, from the next [`solve`](Self::solve) on. Those that are inputs are zero.
+    pub fn seek_forces(&mut self, solver: &Solver) {
+        let forces = solver.forces();
+        self.loads = vec![0.0; forces.inputs()];
+        self.lifted = vec![false; forces.contacts()];
+        self.forces = Some(forces);
+    }
+
+    /// Leaves out reactions, unless contacts may pull: efforts exist where reactions have no limit.
+    pub fn leave_out_reactions(&mut self) {
+        self.parts.reactions = !self.lifted.is_empty();
+    }
+
+    /// Returns the forces, if they are sought.
+    #[must_use]
+    pub fn forces(&self) -> Option<&Forces> {
+        self.forces.as_ref()
+    }
+
+    /// Takes over the rates of the drivers with prescribed motions at the time of the pose.
+    pub fn follow_motions(&mut self, solver: &Solver) {
+        let drivers = solver.mechanism().drivers.iter().enumerate();
+        for (rates, (index, driver)) in self.driver_rates.iter_mut().zip(drivers) {
+            if driver.motion().is_some() {
+                *rates = solver.motion(DriverId(index), solver.pose().time);
+            }
+        }
+    }
+
+    /// Solves the rates at the pose for the rates of the drivers, then the forces.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::solve_rates`] and [`Solver::solve_forces`].
+    pub fn solve(&mut self, solver: &mut Solver) -> Result<(), Error> {
+        self.solve_rates(solver)?;
+        self.solve_forces(solver, self.parts)
+    }
+
+    /// Solves the rates at the pose for the rates of the drivers.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::solve_rates`].
+    pub fn solve_rates(&mut self, solver: &mut Solver) -> Result<(), Error> {
+        let driver_rates = &self.driver_rates;
+        solver.solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
+    }
+
+    /// Solves these parts of the forces, if they are sought, for the rates at the pose.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::solve_forces`].
+    pub fn solve_forces(&mut self, solver: &mut Solver, parts: ForceParts) -> Result<(), Error> {
+        match self.split() {
+            (motion, Some(forces)) => solver.solve_forces(motion, parts, forces),
+            (_, None) => Ok(()),
+        }
+    }
+
+    /// Returns a force, not a number unless forces are sought.
+    #[must_use]
+    pub fn force(&self, quantity: ForceQuantity) -> f64 {
+        let forces = self.forces();
+        forces.map_or(f64::NAN, |forces| forces.value(quantity))
+    }
+
+    /// Returns the value of an output \[SI\], not a number for a force that is not sought.
+    #[must_use]
+    pub fn value(&self, solver: &Solver, output: &Output) -> f64 {
+        match output.source {
+            OutputSource::Force(quantity) => self.force(quantity),
+            _ => output.value(solver, &self.rates, &self.driver_rates),
+        }
+    }
+
+    /// Returns the changes of outputs along a direction \[SI\], not a number for forces that are
+    /// not sought. The loads stay.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::sensitivity`], [`Solver::force_sensitivity`] and [`OutputSource::change`].
+    pub fn changes(
+        &mut self,
+        solver: &mut Solver,
+        outputs: &[Output],
+        direction: &Direction,
+    ) -> Result<Vec<f64>, Error> {
+        let stay = vec![0.0; self.loads.len()];
+        let of_forces = self.force_changes(solver, direction, &stay)?;
+        let mechanism = solver.mechanism().clone();
+        let change = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
+        let changes = outputs
+            .iter()
+            .map(|output| match (output.source, &of_forces) {
+                (OutputSource::Force(quantity), Some(forces)) => forces.change(quantity),
+                (source, _) => source.change(&mechanism, &change),
+            });
+        changes.collect()
+    }
+
+    /// Returns the changes of forces along a direction, along which the loads change by `loads`;
+    /// `None` unless forces are sought.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::force_sensitivity`].
+    pub fn force_changes(
+        &mut self,
+        solver: &mut Solver,
+        direction: &Direction,
+        loads: &[f64],
+    ) -> Result<Option<ForceSensitivity>, Error> {
+        match self.split() {
+            (motion, Some(forces)) => solver
+                .force_sensitivity(motion, direction, loads, forces)
+                .map(Some),
+            (_, None) => Ok(None),
+        }
+    }
+
+    /// Returns the rounding error of a driver's effort \[N or N m\], zero unless forces are sought.
+    #[must_use]
+    pub fn effort_rounding(&self, solver: &Solver, driver: DriverId) -> f64 {
+        let forces = self.forces();
+        forces.map_or(0.0, |forces| {
+            solver.effort_rounding(&self.rates, driver, forces)
+        })
+    }
+
+    /// Returns the contacts that began to pull since the last call.
+    pub fn lift_offs<'a>(&'a mut self, solver: &'a Solver) -> impl Iterator<Item = LiftOff<'a>> {
+        let Self {
+            forces,
+            lifted,
+            parts,
+            ..
+        } = self;
+        let begun = forces
+            .as_ref()
+            .filter(|_| parts.reactions)
+            .map(|forces| solver.lift_offs(forces, lifted));
+        begun.into_iter().flatten()
+    }
+
+    /// Returns the motion, and the forces that are solved for it.
+    fn split(&mut self) -> (KnownMotion<'_>, Option<&mut Forces>) {
+        let motion = KnownMotion {
+            rates: &self.rates,
+            driver_rates: &self.driver_rates,
+            inputs: &self.loads,
+        };
+        (motion, self.forces.as_mut())
+    }
+}
