@@ -136,7 +136,7 @@ fn a_crank_too_long_is_proved_to_leave_one_joint_open() {
     assert!(matches!(**proof, Proof::Reach { .. }), "{error}");
     let distance = (0.64_f64 + 0.16 - 0.32).sqrt();
     assert_eq!(open.len(), 1, "{error}");
-    assert_eq!(open[0].element, "joint `O4`");
+    assert_eq!(open[0].origin, "joint `O4`");
     // Some eps of the lengths.
     assert!((open[0].gap - (distance - 0.55)).abs() < 1e-15, "{error}");
     assert_eq!(
@@ -344,7 +344,7 @@ fn a_chain_of_too_many_modes_is_not_said_to_be_impossible() {
         "{error}"
     );
     assert_eq!(open.len(), 1, "{error}");
-    assert_eq!(open[0].element, "joint `B300`");
+    assert_eq!(open[0].origin, "joint `B300`");
     // The parallel mode leaves √3 − 1.4, the crossed one before it √7 − 1.4.
     assert!(
         (open[0].gap - (3_f64.sqrt() - 1.4)).abs() < 1e-12,

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use biela::cli;
 use biela::drawing::{Diagram, Followed, ForcePlace, svg};
 use biela::kinematics::Output;
-use biela::kinematics::{Carryover, End, Mode, Path, Pose, RangeSettings, Solver};
+use biela::kinematics::{End, Mode, Path, Pose, RangeSettings, Solver, SolverChoices};
 use biela::mechanism::{
     Diagnostic, DriverId, DriverSource, Mechanism as Model, Parameter, ParameterId, Source, Unit,
 };
@@ -528,9 +528,9 @@ impl Mechanism {
             return Ok(Arc::clone(home));
         }
         let solver = Solver::assembled(self.model.clone(), &Path::new(&self.model))?;
-        let mut carryover = Carryover::default();
-        solver.carry_over(&mut carryover);
-        let home = Arc::new((solver.pose().clone(), carryover));
+        let mut choices = SolverChoices::default();
+        solver.copy_choices(&mut choices);
+        let home = Arc::new((solver.pose().clone(), choices));
         Ok(Arc::clone(self.home.get_or_init(|| home)))
     }
 

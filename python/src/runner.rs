@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use biela::kinematics::{
-    Blocked, Carryover, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution, Solver,
+    Blocked, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution, Solver,
+    SolverChoices,
 };
 use biela::mechanism::{DriverId, Jet, Order, show_time};
 
@@ -21,7 +22,7 @@ pub(crate) struct Runner {
     pub(crate) solver: Solver,
     pub(crate) solution: Solution,
     path: Path,
-    carryover: Carryover,
+    choices: SolverChoices,
     near_singular: bool,
     /// Whether motions that stop do so without a reason, which is cheaper.
     pub(crate) gives_up: bool,
@@ -41,7 +42,7 @@ impl Runner {
             solution,
             scenario: scenario.clone(),
             path: Path::new(solver.mechanism()),
-            carryover: Carryover::default(),
+            choices: SolverChoices::default(),
             solver,
             near_singular: false,
             gives_up: false,
@@ -67,8 +68,8 @@ impl Runner {
         let value = |driver| Some(self.sample(driver, 0)?.value);
         let path = (self.home).path_to_start(driven, parameters, self.scenario.times[0], value);
         self.home.start(home, &path)?;
-        self.home.carry_over(&mut self.carryover);
-        self.solver.resume(self.home.pose(), &self.carryover);
+        self.home.copy_choices(&mut self.choices);
+        self.solver.resume(self.home.pose(), &self.choices);
         self.path.from.copy_from_slice(parameters);
         self.path.to.copy_from_slice(parameters);
         self.near_singular = false;

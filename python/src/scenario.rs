@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use biela::cli::{check_parameter, parameter_value, unknown_name};
-use biela::kinematics::{Carryover, Pose};
+use biela::kinematics::{Pose, SolverChoices};
 use biela::mechanism::{DriverId, DriverSource, Jet, Mechanism, Motion, ParameterId, Variable};
 use pyo3::prelude::*;
 
@@ -44,7 +44,7 @@ impl Samples {
 }
 
 /// The pose of the file's own values, with the solver's choices there.
-pub(crate) type Home = (Pose, Carryover);
+pub(crate) type Home = (Pose, SolverChoices);
 
 /// A mechanism with the motions of its drivers.
 #[derive(Clone, Debug)]

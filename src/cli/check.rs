@@ -17,7 +17,7 @@ use super::message::Message;
 use super::output::print;
 use super::suggested_estimates::as_estimates;
 use super::times::Times;
-use crate::kinematics::{self, Element, Mode, Modes, Path, Play, Rates, Solver, System};
+use crate::kinematics::{self, Mode, Modes, Origin, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
     CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
     shown,
@@ -170,7 +170,7 @@ fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
 fn equations_of_joints(system: &System) -> Vec<usize> {
     let mut joints = vec![0; system.mechanism().joints.len()];
     for equation in system.equations() {
-        if let Element::Joint(joint) = equation.element {
+        if let Origin::Joint(joint) = equation.origin {
             joints[joint] += 1;
         }
     }
@@ -198,7 +198,7 @@ fn describe_pose(solver: &mut Solver) -> String {
         let count: usize = redundancies.iter().map(|r| r.redundant).sum();
         let names: Vec<_> = redundancies
             .iter()
-            .map(|r| format!("{} of the {} of {}", r.redundant, r.equations, r.element))
+            .map(|r| format!("{} of the {} of {}", r.redundant, r.equations, r.origin))
             .collect();
         let names = names.join(", ");
         let _ = writeln!(out, "  {:<20}{count:>4}    {names}", "redundant");
@@ -315,7 +315,7 @@ fn describe_play(mechanism: &Arc<Mechanism>, error: &kinematics::Error) -> Strin
         .range
         .map(|value| with_unit(driver.coordinate.kind, value));
     let Play { open, .. } = play;
-    let (joint, play) = (&open.element, open.measured());
+    let (joint, play) = (&open.origin, open.measured());
     let name = &driver.name;
     format!(
         "\nnot assembled; with a play of about {play} in {joint}, and all others exact, {name} moves \

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::anchor::Anchor;
 use super::outline::{across, direction};
 use super::symbol::{ForceArrow, ForceKind, Symbol, TorqueArrow};
-use crate::kinematics::{Element, ForceQuantity, Forces, Solution, Solver};
+use crate::kinematics::{ForceQuantity, Forces, Origin, Solution, Solver};
 use crate::mechanism::{
     Coordinate, CoordinateKind, DriverId, Indeterminate, Load, Mechanism, rounded,
 };
@@ -45,7 +45,7 @@ impl ForcePlace {
     /// second markers, and its springs, dampers and loads. Reactions that redundant constraints
     /// leave `indeterminate` are left out unless the file asks for those of least norm.
     #[must_use]
-    pub fn all(mechanism: &Mechanism, parameters: &[f64], indeterminate: &[Element]) -> Vec<Self> {
+    pub fn all(mechanism: &Mechanism, parameters: &[f64], indeterminate: &[Origin]) -> Vec<Self> {
         let anchor = |marker| Anchor::of_marker(mechanism, parameters, marker);
         let along = |coordinate: &Coordinate, quantity| {
             let axes = anchor(coordinate.axes);
@@ -59,7 +59,7 @@ impl ForcePlace {
         };
         let is_omitted = |joint: usize| {
             mechanism.outputs.indeterminate == Indeterminate::Omit
-                && indeterminate.contains(&Element::Joint(joint))
+                && indeterminate.contains(&Origin::Joint(joint))
         };
         let joints = mechanism.outputs.joints.iter().copied();
         let reactions = joints.filter(|joint| !is_omitted(*joint)).map(|joint| {

@@ -1,7 +1,7 @@
 //! The geometry that lets bodies move with all drivers held, in words.
 
 use super::error::list;
-use super::origin::Element;
+use super::origin::Origin;
 use crate::mechanism::{BodyId, JointKind, Mechanism};
 
 /// The geometry of a group of bodies that can move, to first order, with all drivers held.
@@ -47,7 +47,7 @@ pub enum Member {
     /// A body.
     Body(BodyId),
     /// A joint, constraint or driver.
-    Element(Element),
+    Origin(Origin),
 }
 
 impl Member {
@@ -55,9 +55,9 @@ impl Member {
     pub(in crate::kinematics) fn is_of(self, mechanism: &Mechanism) -> bool {
         match self {
             Self::Body(body) => body.index() < mechanism.bodies.len(),
-            Self::Element(Element::Joint(joint)) => joint < mechanism.joints.len(),
-            Self::Element(Element::Constraint(held)) => held < mechanism.constraints.len(),
-            Self::Element(Element::Driver(driver)) => driver.index() < mechanism.drivers.len(),
+            Self::Origin(Origin::Joint(joint)) => joint < mechanism.joints.len(),
+            Self::Origin(Origin::Constraint(held)) => held < mechanism.constraints.len(),
+            Self::Origin(Origin::Driver(driver)) => driver.index() < mechanism.drivers.len(),
         }
     }
 
@@ -65,13 +65,13 @@ impl Member {
     fn describe(self, mechanism: &Mechanism) -> String {
         match self {
             Self::Body(body) => format!("body `{}`", mechanism.bodies[body.index()].name),
-            Self::Element(element) => element.describe(mechanism),
+            Self::Origin(origin) => origin.describe(mechanism),
         }
     }
 
     /// Returns whether its line is the normal of a contact.
     pub(in crate::kinematics) fn is_contact(self, mechanism: &Mechanism) -> bool {
-        let Self::Element(Element::Joint(joint)) = self else {
+        let Self::Origin(Origin::Joint(joint)) = self else {
             return false;
         };
         let kind = &mechanism.joints[joint].kind;

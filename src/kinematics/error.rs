@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::origin::Element;
+use super::origin::Origin;
 use crate::mechanism::{ProfileError, show_time, shown, shown_apart};
 
 /// A call of the kinematics that could not do its work.
@@ -30,11 +30,11 @@ pub enum Error {
     #[error(
         "{} contradict each other: all others closed, {open}; remove one of them, or make them \
          agree{}",
-        .elements.join(", "), .fit.as_ref().map(|fit| format!(": {fit}")).unwrap_or_default()
+        .origins.join(", "), .fit.as_ref().map(|fit| format!(": {fit}")).unwrap_or_default()
     )]
     Contradiction {
         /// The smallest set: kind and name of each.
-        elements: Vec<String>,
+        origins: Vec<String>,
         /// The gap in the one declared last when the others are closed.
         open: OpenJoint,
         /// The length that would close it, if a length alone decides.
@@ -283,7 +283,7 @@ impl fmt::Display for Proof {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenJoint {
     /// Kind and name.
-    pub element: String,
+    pub origin: String,
     /// The gap between its points \[m\], zero if it has none.
     pub gap: f64,
     /// The error of its angle \[rad\], zero if it has none.
@@ -292,7 +292,7 @@ pub struct OpenJoint {
 
 impl fmt::Display for OpenJoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} stays open by {}", self.element, self.measured())
+        write!(f, "{} stays open by {}", self.origin, self.measured())
     }
 }
 
@@ -311,7 +311,7 @@ impl OpenJoint {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenPose {
     /// The one that is open.
-    pub open: Element,
+    pub open: Origin,
     /// q.
     pub q: Vec<f64>,
 }
@@ -320,7 +320,7 @@ pub struct OpenPose {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// The link or the body that has the length: kind and name.
-    pub element: String,
+    pub origin: String,
     /// The markers of the body between which it is measured; `None` for a link.
     pub between: Option<[String; 2]>,
     /// The length that closes \[m\].
@@ -332,7 +332,7 @@ pub struct Fit {
 impl fmt::Display for Fit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            element,
+            origin,
             between,
             length,
             present,
@@ -346,11 +346,11 @@ impl fmt::Display for Fit {
         match between {
             Some([from, to]) => write!(
                 f,
-                "{element} would fit with {length} from `{from}` to `{to}`, which is {present} now"
+                "{origin} would fit with {length} from `{from}` to `{to}`, which is {present} now"
             ),
             None => write!(
                 f,
-                "{element} would fit with a length of {length}, which is {present} now"
+                "{origin} would fit with a length of {length}, which is {present} now"
             ),
         }
     }

@@ -83,14 +83,14 @@ pub use forces::{
     ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff, Reported,
 };
 pub use linear::PivotOrder;
-pub use origin::Element;
+pub use origin::Origin;
 pub use path::{Curve, Path, Rates};
-pub use plan::{BlockCarryover, CheckedSegment, Crossing, Polynomial};
+pub use plan::{BlockChoices, CheckedSegment, Crossing, Polynomial};
 pub use redundancy::Redundancy;
 pub use results::{Output, OutputSource, Solution, omitted_reactions};
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::Solver;
 pub use start::Assembly;
-pub use state::{Carryover, Pose};
+pub use state::{Pose, SolverChoices};
 pub use system::structure::{Dependencies, Structure};
 pub use system::{Equation, System, Target, Targets};

@@ -1,10 +1,10 @@
-//! The element of the mechanism file that an equation belongs to.
+//! The origin of an equation: what in the mechanism file it comes from.
 
 use crate::mechanism::{DriverId, Mechanism};
 
 /// The joint, constraint or driver of an equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Element {
+pub enum Origin {
     /// Index into [`Mechanism::joints`].
     Joint(usize),
     /// Index into [`Mechanism::constraints`].
@@ -13,7 +13,7 @@ pub enum Element {
     Driver(DriverId),
 }
 
-impl Element {
+impl Origin {
     /// Returns the name in the mechanism file.
     #[must_use]
     pub fn name(self, mechanism: &Mechanism) -> &str {

@@ -9,15 +9,15 @@ use super::assembly::estimate::{Move, estimate, moves};
 use super::continuation::{Blocked, PathTracker, Progress};
 use super::error::Error;
 use super::forces::{self, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
-use super::origin::Element;
+use super::origin::Origin;
 use super::path::{Curve, Path, Rates};
 use super::plan::Crossing;
-use super::plan::model::Model;
+use super::plan::compiled_mechanism::CompiledMechanism;
 use super::redundancy::{self, Redundancy};
 use super::singular::{self, Approach};
 use super::start;
 use super::start::initial_pose::{self, Assembly};
-use super::state::{Carryover, Pose, State};
+use super::state::{Pose, SolverChoices, State};
 use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism, Motion, Order, ParameterId};
@@ -44,7 +44,7 @@ use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism, Motion, Order
 /// ```
 #[derive(Debug)]
 pub struct Solver {
-    pub(super) model: Model,
+    pub(super) compiled: CompiledMechanism,
     pub(super) state: State,
     pub(super) tracker: PathTracker,
 }
@@ -59,14 +59,14 @@ impl Solver {
     /// [`assemble`](Self::assemble).
     pub fn new(mechanism: Arc<Mechanism>) -> Result<Self, Error> {
         let path = Path::new(&mechanism);
-        let (mut model, pairs_up) = Model::new(mechanism);
-        let mut state = State::new(&model.system);
+        let (mut compiled, pairs_up) = CompiledMechanism::new(mechanism);
+        let mut state = State::new(&compiled.system);
         if !pairs_up {
-            redundancy::choose_rows(&mut model, &mut state, &path)?;
+            redundancy::choose_rows(&mut compiled, &mut state, &path)?;
         }
         Ok(Self {
-            tracker: PathTracker::new(&model.system),
-            model,
+            tracker: PathTracker::new(&compiled.system),
+            compiled,
             state,
         })
     }
@@ -85,19 +85,19 @@ impl Solver {
     /// Returns the mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
-        self.model.system.mechanism()
+        self.compiled.system.mechanism()
     }
 
     /// Returns its equations.
     #[must_use]
     pub fn system(&self) -> &System {
-        &self.model.system
+        &self.compiled.system
     }
 
     /// Returns the structure of the equations that are solved; those set aside take no part.
     #[must_use]
     pub fn structure(&self) -> &Structure {
-        &self.model.structure
+        &self.compiled.structure
     }
 
     /// Returns the pose.
@@ -120,7 +120,7 @@ impl Solver {
     /// is then without a valid pose until it is assembled or [restored](Self::restore); after the
     /// first of these its pose is the nearest one.
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
-        initial_pose::assemble(&mut self.model, &mut self.state, path)
+        initial_pose::assemble(&mut self.compiled, &mut self.state, path)
     }
 
     /// Returns the path from the pose, which is that of the mechanism's own values, to the start of a
@@ -172,7 +172,7 @@ impl Solver {
     /// without the pose asked for until it is [restored](Self::restore).
     pub fn start(&mut self, home: &Pose, path: &Path) -> Result<Progress, Error> {
         start::start(
-            &mut self.model,
+            &mut self.compiled,
             &mut self.state,
             &mut self.tracker,
             home,
@@ -190,7 +190,7 @@ impl Solver {
     /// one reached, which is a valid one.
     pub fn track(&mut self, path: &Path) -> Result<Progress, Blocked> {
         self.tracker
-            .track(&mut self.model, &mut self.state, path, false)
+            .track(&mut self.compiled, &mut self.state, path, false)
     }
 
     /// Moves the mechanism along `path` as [`track`](Self::track) does, and gives up early where it
@@ -202,7 +202,7 @@ impl Solver {
     /// [`Blocked`] as for [`track`](Self::track); the reason is not looked for.
     pub fn track_or_give_up(&mut self, path: &Path) -> Result<Progress, Blocked> {
         self.tracker
-            .track(&mut self.model, &mut self.state, path, true)
+            .track(&mut self.compiled, &mut self.state, path, true)
     }
 
     /// Returns the change points that the last call of [`track`](Self::track) passed, in order.
@@ -218,17 +218,17 @@ impl Solver {
     ///
     /// If the pose belongs to another mechanism.
     pub fn restore(&mut self, pose: &Pose) {
-        self.state.restore(&mut self.model, pose);
+        self.state.restore(&mut self.compiled, pose);
     }
 
-    /// Copies the effects of earlier motion besides the pose into `carryover`. Allocates the first
+    /// Copies the effects of earlier motion besides the pose into `choices`. Allocates the first
     /// time and when choices have changed.
-    pub fn carry_over(&self, carryover: &mut Carryover) {
-        let Model {
+    pub fn copy_choices(&self, choices: &mut SolverChoices) {
+        let CompiledMechanism {
             redundant, plan, ..
-        } = &self.model;
-        carryover.set_aside.clone_from(&redundant.now);
-        plan.carry_over(&mut carryover.blocks);
+        } = &self.compiled;
+        choices.set_aside.clone_from(&redundant.now);
+        plan.copy_choices(&mut choices.blocks);
     }
 
     /// Puts the mechanism back to a pose with the choices that were in use there: all further
@@ -238,8 +238,8 @@ impl Solver {
     /// # Panics
     ///
     /// If the pose belongs to another mechanism.
-    pub fn resume(&mut self, pose: &Pose, carryover: &Carryover) -> bool {
-        self.state.resume(&mut self.model, pose, carryover)
+    pub fn resume(&mut self, pose: &Pose, choices: &SolverChoices) -> bool {
+        self.state.resume(&mut self.compiled, pose, choices)
     }
 
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
@@ -252,13 +252,13 @@ impl Solver {
     /// characteristic length, radians.
     #[must_use]
     pub fn residual(&self) -> f64 {
-        self.state.residual(&self.model.system)
+        self.state.residual(&self.compiled.system)
     }
 
     /// Returns the scaled reciprocal condition of the Jacobian at the present pose: 1 is best, 0
     /// singular. It is that of the block nearest to a singular position.
     pub fn rcond(&mut self) -> f64 {
-        self.state.rcond(&mut self.model)
+        self.state.rcond(&mut self.compiled)
     }
 
     /// Solves the rates of q at the present pose for given rates of the drivers (`first` and
@@ -274,13 +274,13 @@ impl Solver {
         driver: impl Fn(DriverId) -> Jet,
         rates: &mut Rates,
     ) -> Result<(), Error> {
-        self.state.solve_rates(&mut self.model, driver, rates)
+        self.state.solve_rates(&mut self.compiled, driver, rates)
     }
 
     /// Returns value, rate and acceleration of a measure at the present pose. Allocates nothing.
     #[must_use]
     pub fn measure(&self, index: usize, rates: &Rates) -> Jet {
-        self.state.measure(&*self.model.measures[index], rates)
+        self.state.measure(&*self.compiled.measures[index], rates)
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
@@ -304,8 +304,8 @@ impl Solver {
     /// [`Error::NotFinite`] for estimates that have no value with the parameters in force.
     pub fn moves(&self) -> Result<Vec<Move>, Error> {
         let pose = self.pose();
-        let estimate = estimate(&self.model.system, &pose.parameters)?;
-        Ok(moves(&self.model.system, &pose.q, &estimate).collect())
+        let estimate = estimate(&self.compiled.system, &pose.parameters)?;
+        Ok(moves(&self.compiled.system, &pose.q, &estimate).collect())
     }
 
     /// Returns the joints and constraints with redundant equations, known once the solver is
@@ -313,14 +313,14 @@ impl Solver {
     /// is watched, and a step after which they do not is rejected.
     #[must_use]
     pub fn redundancies(&self) -> Vec<Redundancy> {
-        redundancy::redundancies(&self.model)
+        redundancy::redundancies(&self.compiled)
     }
 
     /// Returns the joints that do not fit their own numbers at the present pose, in the order of
     /// declaration.
     #[must_use]
     pub fn geometry_warnings(&self) -> Vec<GeometryWarning> {
-        analysis::geometry_warnings(&self.model, &self.state)
+        analysis::geometry_warnings(&self.compiled, &self.state)
     }
 
     /// Returns the approach to a singular position, if the mechanism, at the end of a path, has
@@ -328,20 +328,20 @@ impl Solver {
     /// is away again. Next to a change point that is crossed there is no warning. Away from
     /// singular positions it costs a comparison.
     pub fn approach(&mut self, near: &mut bool) -> Option<Approach> {
-        singular::approach(&mut self.model, &mut self.state, near)
+        singular::approach(&mut self.compiled, &mut self.state, near)
     }
 
     /// Returns the message for a change point that was passed.
     #[must_use]
     pub fn describe_crossing(&self, crossing: &Crossing) -> String {
-        singular::describe_crossing(&self.model, crossing)
+        singular::describe_crossing(&self.compiled, crossing)
     }
 
     /// Returns whether the crossings of a pose that was read from outside are possible for this
     /// mechanism and contain q. The pose is then any until the next [`restore`](Self::restore).
     #[must_use]
     pub fn admits_crossings(&mut self, pose: &Pose) -> bool {
-        singular::admits_crossings(&mut self.model, &mut self.state, pose)
+        singular::admits_crossings(&mut self.compiled, &mut self.state, pose)
     }
 
     /// Returns the derivative of the motion at the present pose along a direction, for these rates
@@ -360,8 +360,10 @@ impl Solver {
         let mut found = None;
         let directions = std::slice::from_ref(direction);
         let sought = (directions, Order::Acceleration);
-        let Self { model, state, .. } = self;
-        state.sensitivities(model, rates, driver_rates, sought, |along| {
+        let Self {
+            compiled, state, ..
+        } = self;
+        state.sensitivities(compiled, rates, driver_rates, sought, |along| {
             found = Some(along);
             Ok(())
         })?;
@@ -383,16 +385,22 @@ impl Solver {
         order: Order,
         mut each: impl FnMut(&Sensitivity<'_>) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let Self { model, state, .. } = self;
-        state.sensitivities(model, rates, driver_rates, (directions, order), |along| {
-            each(&along)
-        })
+        let Self {
+            compiled, state, ..
+        } = self;
+        state.sensitivities(
+            compiled,
+            rates,
+            driver_rates,
+            (directions, order),
+            |along| each(&along),
+        )
     }
 
     /// Makes the storage for forces of this mechanism.
     #[must_use]
     pub fn forces(&self) -> Forces {
-        Forces::new(&self.model)
+        Forces::new(&self.compiled)
     }
 
     /// Solves the forces at the present pose for a motion that [`solve_rates`](Self::solve_rates)
@@ -410,7 +418,7 @@ impl Solver {
         parts: ForceParts,
         forces: &mut Forces,
     ) -> Result<(), Error> {
-        forces.solve(&mut self.model, &mut self.state, motion, parts)
+        forces.solve(&mut self.compiled, &mut self.state, motion, parts)
     }
 
     /// Returns the rounding error of a driver's effort \[N or N m\]: a smaller effort cannot be told
@@ -444,14 +452,16 @@ impl Solver {
         inputs: &[f64],
         forces: &mut Forces,
     ) -> Result<ForceSensitivity, Error> {
-        let Self { model, state, .. } = self;
-        forces.sensitivity(model, state, motion, direction, inputs)
+        let Self {
+            compiled, state, ..
+        } = self;
+        forces.sensitivity(compiled, state, motion, direction, inputs)
     }
 
     /// Returns the joints and constraints whose reactions redundant constraints leave
     /// indeterminate, known once the solver is [assembled](Self::assemble). The pose is unchanged.
-    pub fn indeterminate(&mut self) -> Vec<Element> {
-        forces::indeterminate(&mut self.model, &mut self.state, &mut self.tracker)
+    pub fn indeterminate(&mut self) -> Vec<Origin> {
+        forces::indeterminate(&mut self.compiled, &mut self.state, &mut self.tracker)
     }
 
     /// Returns the instant centre of a body and ground, for rates of the present pose.
@@ -474,7 +484,13 @@ impl Solver {
     /// If the driver is none of the mechanism's.
     pub fn range(&mut self, driver: DriverId, settings: &RangeSettings) -> Range {
         let tracker = &mut self.tracker;
-        analysis::range(&mut self.model, &mut self.state, tracker, driver, settings)
+        analysis::range(
+            &mut self.compiled,
+            &mut self.state,
+            tracker,
+            driver,
+            settings,
+        )
     }
 
     /// Finds the other assembly modes for the parameters and driver values of the present pose. The
@@ -486,7 +502,7 @@ impl Solver {
     ///
     /// [`Error::NotFinite`] for estimates that have no value with the parameters in force.
     pub fn modes(&mut self) -> Result<Modes, Error> {
-        analysis::modes(&mut self.model, &mut self.state)
+        analysis::modes(&mut self.compiled, &mut self.state)
     }
     /// Finds poses at the end of `path`, in any assembly mode, in the same order for the same
     /// branches: both branches of each dyad, of other blocks those found from starts near the
@@ -499,6 +515,6 @@ impl Solver {
     /// [`Error::NotFinite`], [`Error::NotPositive`] and [`Error::NoMotion`] for values without a
     /// mechanism.
     pub fn poses(&mut self, path: &Path) -> Result<Vec<Pose>, Error> {
-        analysis::poses(&mut self.model, &mut self.state, path)
+        analysis::poses(&mut self.compiled, &mut self.state, path)
     }
 }

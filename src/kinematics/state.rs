@@ -8,8 +8,8 @@ use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity
 use super::error::Error;
 use super::newton::Rejected;
 use super::path::{Curve, Motions, Path, Rates};
-use super::plan::model::Model;
-use super::plan::{BlockCarryover, BlockState, Crossing, JacobianFactors};
+use super::plan::compiled_mechanism::CompiledMechanism;
+use super::plan::{BlockChoices, BlockState, Crossing, JacobianFactors};
 use super::system::{System, Targets, Values};
 use crate::mechanism::{DriverId, Jet, MarkerId};
 
@@ -63,14 +63,14 @@ impl Pose {
 /// The effects of earlier motion on further results, apart from the pose: choices that hold until
 /// they are no longer fit. They decide about the last bits only.
 #[derive(Debug, Default, PartialEq)]
-pub struct Carryover {
+pub struct SolverChoices {
     /// The rows set aside as redundant, ascending.
     pub set_aside: Vec<usize>,
     /// One entry per block with a sparse matrix, in the order of solution.
-    pub blocks: Vec<BlockCarryover>,
+    pub blocks: Vec<BlockChoices>,
 }
 
-impl Clone for Carryover {
+impl Clone for SolverChoices {
     fn clone(&self) -> Self {
         Self {
             set_aside: self.set_aside.clone(),
@@ -156,18 +156,18 @@ impl State {
     }
 
     /// Takes the storage for factors of the rows that are solved.
-    pub(super) fn take_factors(&mut self, model: &Model) -> JacobianFactors {
+    pub(super) fn take_factors(&mut self, compiled: &CompiledMechanism) -> JacobianFactors {
         let kept = self.factors.take();
-        let fitting = kept.filter(|(set_aside, _)| *set_aside == model.redundant.now);
+        let fitting = kept.filter(|(set_aside, _)| *set_aside == compiled.redundant.now);
         fitting.map_or_else(
-            || JacobianFactors::new(&model.system, &model.structure, &model.plan),
+            || JacobianFactors::new(&compiled.system, &compiled.structure, &compiled.plan),
             |(_, factors)| factors,
         )
     }
 
     /// Keeps the storage for the next use.
-    pub(super) fn keep_factors(&mut self, model: &Model, factors: JacobianFactors) {
-        self.factors = Some((model.redundant.now.clone(), factors));
+    pub(super) fn keep_factors(&mut self, compiled: &CompiledMechanism, factors: JacobianFactors) {
+        self.factors = Some((compiled.redundant.now.clone(), factors));
     }
 
     /// Returns the mechanism as block solvers see it.
@@ -193,11 +193,11 @@ impl State {
     /// Those of [`System::set_parameters`].
     pub(super) fn try_parameters(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         parameters: &[f64],
     ) -> Result<(), Error> {
         self.has_parameters = false;
-        let Model { system, plan, .. } = model;
+        let CompiledMechanism { system, plan, .. } = compiled;
         system.set_parameters(parameters, &mut self.at, &mut self.targets)?;
         plan.set_parameters(system, &self.at, &self.targets);
         self.motions
@@ -212,10 +212,10 @@ impl State {
     /// Those of [`System::set_parameters`].
     pub(super) fn set_parameters(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         parameters: &[f64],
     ) -> Result<(), Error> {
-        self.try_parameters(model, parameters)?;
+        self.try_parameters(compiled, parameters)?;
         self.accept_parameters(parameters);
         Ok(())
     }
@@ -232,15 +232,15 @@ impl State {
     }
 
     /// Derives the parameters in force and the bodies from the pose again.
-    pub(super) fn return_to_pose(&mut self, model: &mut Model) {
+    pub(super) fn return_to_pose(&mut self, compiled: &mut CompiledMechanism) {
         if !self.has_parameters {
             let parameters = std::mem::take(&mut self.pose.parameters);
-            let set = self.try_parameters(model, &parameters);
+            let set = self.try_parameters(compiled, &parameters);
             set.expect("the parameters of a pose were valid when it was found");
             self.pose.parameters = parameters;
             self.has_parameters = true;
         }
-        self.move_to_pose(&model.system);
+        self.move_to_pose(&compiled.system);
     }
 
     /// Moves the bodies to the pose.
@@ -256,17 +256,17 @@ impl State {
     ///
     /// [`Error::Singular`] where a Jacobian is singular to the last bit.
     #[inline]
-    pub(super) fn refresh(&mut self, model: &mut Model) -> Result<(), Error> {
+    pub(super) fn refresh(&mut self, compiled: &mut CompiledMechanism) -> Result<(), Error> {
         if self.factorised {
             return Ok(());
         }
-        self.factorise(model)
+        self.factorise(compiled)
     }
 
     #[inline(never)]
-    fn factorise(&mut self, model: &mut Model) -> Result<(), Error> {
+    fn factorise(&mut self, compiled: &mut CompiledMechanism) -> Result<(), Error> {
         let single = self.has_single_driver();
-        let Model { system, plan, .. } = model;
+        let CompiledMechanism { system, plan, .. } = compiled;
         let mut state = self.block_state(system);
         plan.factorise(&mut state)
             .map_err(|Rejected| SINGULAR_HERE)?;
@@ -283,69 +283,78 @@ impl State {
         self.factorised = false;
     }
 
-    /// Compiles the plan again, for the rows that the model has now.
-    pub(super) fn compile(&mut self, model: &mut Model) {
-        model.compile(&self.at, &self.targets);
+    /// Compiles the plan again, for the rows that the mechanism has now.
+    pub(super) fn compile(&mut self, compiled: &mut CompiledMechanism) {
+        compiled.compile(&self.at, &self.targets);
         self.factorised = false;
     }
 
     /// Sets these redundant rows aside; if others were, the pose loses its crossings. Returns false if
     /// they are of another mechanism; the rows set aside are then as before.
-    pub(super) fn set_aside(&mut self, model: &mut Model, rows: &[usize]) -> bool {
-        if model.redundant.now == rows {
+    pub(super) fn set_aside(&mut self, compiled: &mut CompiledMechanism, rows: &[usize]) -> bool {
+        if compiled.redundant.now == rows {
             return true;
         }
-        self.release_crossings(model);
-        let fits = model.set_aside(rows);
+        self.release_crossings(compiled);
+        let fits = compiled.set_aside(rows);
         if fits {
-            self.compile(model);
+            self.compile(compiled);
         }
         fits
     }
 
     /// Goes to a pose that this mechanism was at. The rows in use there come back with its crossings.
-    pub(super) fn restore(&mut self, model: &mut Model, pose: &Pose) {
+    pub(super) fn restore(&mut self, compiled: &mut CompiledMechanism, pose: &Pose) {
         self.has_parameters &= self.pose.parameters == pose.parameters;
-        self.release_crossings(model);
+        self.release_crossings(compiled);
         self.pose.copy_place(pose);
         self.targets.turns.copy_from_slice(&self.pose.turns);
-        self.return_to_pose(model);
+        self.return_to_pose(compiled);
         if let Some(crossing) = pose.crossings.first() {
-            let fits = self.set_aside(model, &crossing.set_aside);
+            let fits = self.set_aside(compiled, &crossing.set_aside);
             debug_assert!(fits, "the mechanism was at the pose");
         }
         for crossing in &pose.crossings {
-            self.add_crossing(model, crossing);
+            self.add_crossing(compiled, crossing);
         }
-        model.plan.forget_proofs();
+        compiled.plan.forget_proofs();
     }
 
     /// Goes to a pose with the choices that were in use there. Returns false if these are of
     /// another mechanism; the choices in use are then any.
-    pub(super) fn resume(&mut self, model: &mut Model, pose: &Pose, carryover: &Carryover) -> bool {
-        if !self.set_aside(model, &carryover.set_aside) {
+    pub(super) fn resume(
+        &mut self,
+        compiled: &mut CompiledMechanism,
+        pose: &Pose,
+        choices: &SolverChoices,
+    ) -> bool {
+        if !self.set_aside(compiled, &choices.set_aside) {
             return false;
         }
-        self.restore(model, pose);
-        model.plan.take_over(&carryover.blocks)
+        self.restore(compiled, pose);
+        compiled.plan.take_choices(&choices.blocks)
     }
 
     /// Lets the unknowns of a block come from a crossing, which becomes one of the pose.
-    pub(super) fn add_crossing(&mut self, model: &mut Model, crossing: &Arc<Crossing>) {
-        model.plan.interpolate(crossing);
+    pub(super) fn add_crossing(
+        &mut self,
+        compiled: &mut CompiledMechanism,
+        crossing: &Arc<Crossing>,
+    ) {
+        compiled.plan.interpolate(crossing);
         self.pose.crossings.push(Arc::clone(crossing));
     }
 
     /// Removes the crossing with this index from the pose.
-    pub(super) fn remove_crossing(&mut self, model: &mut Model, index: usize) {
+    pub(super) fn remove_crossing(&mut self, compiled: &mut CompiledMechanism, index: usize) {
         let crossing = self.pose.crossings.remove(index);
-        model.plan.release(crossing.block);
+        compiled.plan.release(crossing.block);
     }
 
     /// Removes all crossings from the pose.
-    pub(super) fn release_crossings(&mut self, model: &mut Model) {
+    pub(super) fn release_crossings(&mut self, compiled: &mut CompiledMechanism) {
         while let Some(crossing) = self.pose.crossings.pop() {
-            model.plan.release(crossing.block);
+            compiled.plan.release(crossing.block);
         }
     }
 
@@ -391,9 +400,9 @@ impl State {
 
     /// Returns the scaled reciprocal condition at the pose, of the block nearest to a singular
     /// position; zero where it is singular.
-    pub(super) fn rcond(&mut self, model: &mut Model) -> f64 {
-        match self.refresh(model) {
-            Ok(()) => model.plan.rcond(),
+    pub(super) fn rcond(&mut self, compiled: &mut CompiledMechanism) -> f64 {
+        match self.refresh(compiled) {
+            Ok(()) => compiled.plan.rcond(),
             Err(_) => 0.0,
         }
     }
@@ -406,11 +415,11 @@ impl State {
     /// that are not finite, [`Error::TooFast`] where they make those of bodies overflow.
     pub(super) fn solve_rates(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         driver: impl Fn(DriverId) -> Jet,
         rates: &mut Rates,
     ) -> Result<(), Error> {
-        self.refresh(model)?;
+        self.refresh(compiled)?;
         let finite = if self.has_single_driver() {
             let [first, second] = driver(DriverId(0)).derivatives;
             self.tangent.scale(first, second, rates)
@@ -419,19 +428,19 @@ impl State {
                 *jet = driver(DriverId(index));
             }
             let mut state = BlockState {
-                system: &model.system,
+                system: &compiled.system,
                 targets: &self.targets,
                 drivers: &self.pose.drivers,
                 at: &mut self.at,
                 tangent: rates,
             };
-            model.plan.solve_rates(&mut state, &self.driver_rates);
+            compiled.plan.solve_rates(&mut state, &self.driver_rates);
             rates.is_finite()
         };
         if finite {
             Ok(())
         } else {
-            Err(self.explain_rates(&model.system, driver))
+            Err(self.explain_rates(&compiled.system, driver))
         }
     }
 

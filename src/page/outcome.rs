@@ -66,7 +66,7 @@ impl Obstacle {
         let time = (path.duration > 0.0).then_some(pose.time);
         let names: Vec<&str> = match &blocked.reason {
             Reason::Singular(point) => point.bodies.iter().map(String::as_str).collect(),
-            Reason::Contradiction(open) => vec![&open.element],
+            Reason::Contradiction(open) => vec![&open.origin],
             _ => Vec::new(),
         };
         Self {
@@ -79,7 +79,7 @@ impl Obstacle {
     /// Returns the error of an assembly; the solver is at a valid pose.
     pub(super) fn of_assembly(error: &Error, solver: &Solver) -> Self {
         let names: Vec<&str> = match error {
-            Error::NotAssembled { open, .. } => open.iter().map(|o| o.element.as_str()).collect(),
+            Error::NotAssembled { open, .. } => open.iter().map(|o| o.origin.as_str()).collect(),
             Error::Singular { bodies, .. } => bodies.iter().map(String::as_str).collect(),
             _ => Vec::new(),
         };

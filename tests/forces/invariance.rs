@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, Element, ForceParts, ForceQuantity, KnownMotion, Path, Solver};
+use biela::kinematics::{Curve, ForceParts, ForceQuantity, KnownMotion, Origin, Path, Solver};
 use biela::mechanism::{
     CoordinateKind, DriverId, DriverSource, Expression, ForceLaw, Jet, JointKind, Load, Marker,
     MarkerId, Mechanism,
@@ -160,7 +160,7 @@ struct Comparison {
     base: Loaded,
     other: Loaded,
     /// Joints and constraints whose reactions redundant constraints leave open.
-    open: Vec<Element>,
+    open: Vec<Origin>,
     /// Result, value and expected value.
     rows: Vec<(String, f64, f64)>,
 }
@@ -184,7 +184,7 @@ impl Comparison {
     fn scalars(&mut self, scale: Scale, rule: impl Fn(ForceQuantity, f64) -> f64) {
         for (quantity, factor) in scalars(&self.mechanism(), scale) {
             if let ForceQuantity::Held(index) = quantity
-                && self.open.contains(&Element::Constraint(index))
+                && self.open.contains(&Origin::Constraint(index))
             {
                 continue;
             }
@@ -202,7 +202,7 @@ impl Comparison {
         rule: impl Fn(usize, Vector2<f64>, f64) -> (Vector2<f64>, f64),
     ) {
         for (index, joint) in self.mechanism().joints.iter().enumerate() {
-            if self.open.contains(&Element::Joint(index)) {
+            if self.open.contains(&Origin::Joint(index)) {
                 continue;
             }
             let of = |loaded: &Loaded| {

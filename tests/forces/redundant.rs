@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use biela::kinematics::{
-    Element, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Solver,
+    ForceParts, ForceQuantity, Forces, KnownMotion, Origin, Path, Rates, Solver,
 };
 use biela::mechanism::{DriverId, Indeterminate, Jet, Mechanism, Source};
 
@@ -58,10 +58,7 @@ fn reaction(forces: &Forces, joint: usize) -> [f64; 3] {
 fn indeterminate_reactions_are_found_and_efforts_are_exact() {
     let (mut solver, forces) = solved(parse(SLAB));
     // The two slides can press against each other and twist each other.
-    assert_eq!(
-        solver.indeterminate(),
-        [Element::Joint(3), Element::Joint(4)]
-    );
+    assert_eq!(solver.indeterminate(), [Origin::Joint(3), Origin::Joint(4)]);
     let (_, single) = solved(parse(&SLAB.replace("joints.T =", "# ")));
     let mut same = vec![
         (ForceQuantity::Effort(DriverId(0)), 0.0),

@@ -52,7 +52,7 @@ fn one_joint_too_many_in_a_long_chain_is_found() {
         let (mut solver, mut path) = assembled(&parse(&text));
         let redundancies = solver.redundancies();
         assert_eq!(redundancies.len(), 1, "{what}");
-        assert_eq!(redundancies[0].element, name, "{what}");
+        assert_eq!(redundancies[0].origin, name, "{what}");
         let angle = TAU / 6.0 + 0.1;
         straight_to(&solver, &mut path, angle);
         solver

@@ -32,17 +32,17 @@ fn a_parameter_that_ends_a_redundancy_is_refused() {
     let Reason::Contradiction(open) = &blocked.reason else {
         panic!("{blocked:?}");
     };
-    assert_eq!(open.element, "joint `rod`");
+    assert_eq!(open.origin, "joint `rod`");
     // The gap is that of the first attempt, over all of the path.
     assert!((open.gap - 0.01).abs() < 1e-12, "{open}");
     // A gap of a thousand millionth of the size counts as one.
     let reached = solver.pose().parameters[0] - 0.4;
     assert!((0.0..1e-9).contains(&reached), "{reached:e}");
     let error = solver.assemble(&path).expect_err("nor can it be assembled");
-    let Error::Contradiction { elements, open, .. } = &error else {
+    let Error::Contradiction { origins, open, .. } = &error else {
         panic!("{error}");
     };
-    assert_eq!(elements[..], ["joint `A`", "joint `B`", "joint `rod`"]);
+    assert_eq!(origins[..], ["joint `A`", "joint `B`", "joint `rod`"]);
     assert_eq!(open.to_string(), "joint `rod` stays open by 10.00 mm");
     // Nothing is lost.
     solver.restore(&home);
@@ -69,14 +69,14 @@ fn a_redundancy_that_ends_on_the_way_stops_the_mechanism_there() {
     let ground = "O = [0, 0]\nup = [0, 0, \"90*deg\"]";
     let text = file(ground, &bodies, &joints, &driver);
     let (mut solver, mut path) = assembled(&parse(&text));
-    assert_eq!(solver.redundancies()[0].element, "constraint `level`");
+    assert_eq!(solver.redundancies()[0].origin, "constraint `level`");
     // The contact is at theta = 90° − u.
     straight_to(&solver, &mut path, -TAU / 12.0);
     let blocked = solver.track(&path).expect_err("the lobe begins on the way");
     let Reason::Contradiction(open) = &blocked.reason else {
         panic!("{blocked:?}");
     };
-    assert_eq!(open.element, "constraint `level`");
+    assert_eq!(open.origin, "constraint `level`");
     // A gap is a thousand millionth of the size, 0.05 m; its rounding is a thousandth of that.
     let theta = 2.0 * (1e-9_f64 * 0.05 / 0.01).powf(1.0 / 40.0).asin();
     let reached = solver.pose().drivers[0];
@@ -115,7 +115,7 @@ fn a_lobe_between_two_steps_is_found() {
         .flat_map(|n| [(n, 0.0), (n, 0.01)])
     {
         let (mut solver, mut path) = assembled(&cam(" + 5*max(0, cos(theta) - 0.9)^3"));
-        assert_eq!(solver.redundancies()[0].element, "joint `contact`");
+        assert_eq!(solver.redundancies()[0].origin, "joint `contact`");
         let blocked = (1..=steps).find_map(|step| {
             straight_to(&solver, &mut path, TAU * f64::from(step) / f64::from(steps));
             path.from.clone_from(&solver.pose().parameters);
@@ -126,7 +126,7 @@ fn a_lobe_between_two_steps_is_found() {
         let Reason::Contradiction(open) = &blocked.reason else {
             panic!("{steps}: {blocked:?}");
         };
-        assert_eq!(open.element, "joint `contact`");
+        assert_eq!(open.origin, "joint `contact`");
         let reached = solver.pose().drivers[0];
         assert!((reached - begins).abs() < 1e-3, "{steps}: {reached}");
     }

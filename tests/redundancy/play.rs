@@ -27,7 +27,7 @@ fn a_pivot_out_of_place_needs_a_play_as_large_where_the_cranks_are_flat() {
         let text = parallelogram(&[[0.2, 0.1]], 60.0, true);
         let text = text.replace("O5 = [0.2, 0.1]", &format!("O5 = [{}, 0.1]", 0.2 + off));
         let play = play_of(&text).expect("it moves");
-        assert_eq!(play.open.element, "joint `O5`");
+        assert_eq!(play.open.origin, "joint `O5`");
         let part = play.open.gap / off;
         assert!(
             (STEP.cos() - 0.5 * off / 0.1..=1.0 + 1e-6).contains(&part),
@@ -56,7 +56,7 @@ fn a_length_out_of_place_needs_a_play_as_large_everywhere() {
         let rod = with_joints(&parallelogram(&[], 60.0, true), &rod);
         for (text, joint) in [(crank, "joint `O5`"), (rod, "joint `rod`")] {
             let play = play_of(&text).expect("it moves");
-            assert_eq!(play.open.element, joint);
+            assert_eq!(play.open.origin, joint);
             let off = (play.open.gap - slip).abs();
             assert!(off < 1e-5 * slip + CLOSE, "{joint}, {slip}: {off:e}");
         }

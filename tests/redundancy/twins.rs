@@ -152,7 +152,7 @@ proptest! {
         let start = solver.pose().drivers.first().copied().unwrap_or(0.0);
         let redundancies = solver.redundancies();
         prop_assert_eq!(redundancies.len(), 1);
-        prop_assert_eq!(&redundancies[0].element, &format!("joint `{joint}_again`"));
+        prop_assert_eq!(&redundancies[0].origin, &format!("joint `{joint}_again`"));
         prop_assert_eq!(redundancies[0].redundant, redundancies[0].equations);
         let twin = shipped(name);
         if twin.drivers.first().is_some_and(|driver| driver.motion().is_none()) {

@@ -284,15 +284,15 @@ fn each_mechanism_has_its_verdict() {
                 let found = solver.redundancies();
                 let found: Vec<_> = found
                     .iter()
-                    .map(|r| (r.element.as_str(), r.redundant, r.equations))
+                    .map(|r| (r.origin.as_str(), r.redundant, r.equations))
                     .collect();
                 assert_eq!(found, expected, "{name}");
                 // All rows, those set aside as well.
                 assert!(solver.residual() < 8.0 * f64::EPSILON, "{name}");
             }
             (Err(error), Says(expected)) => assert_eq!(error.to_string(), expected, "{name}"),
-            (Err(Error::Contradiction { elements, .. }), Contradicts(expected)) => {
-                assert_eq!(elements, expected, "{name}");
+            (Err(Error::Contradiction { origins, .. }), Contradicts(expected)) => {
+                assert_eq!(origins, expected, "{name}");
             }
             (Err(Error::Singular { bodies, rcond }), Singular(expected)) => {
                 assert_eq!(bodies, expected, "{name}");
@@ -309,13 +309,13 @@ const FOUR_DIGITS: f64 = 5e-5;
 /// Rounding of lengths below half a metre, in the few that make a gap \[m\].
 const ROUNDING: f64 = 1e-15;
 
-/// Expects the contradiction of these elements, open by so much in the last one, and returns the
+/// Expects the contradiction of these origins, open by so much in the last one, and returns the
 /// length that would close it, with the present one.
 #[track_caller]
 fn expect_slip(name: &str, text: &str, expected: &[&str], gap: f64) -> Option<[f64; 2]> {
     let error = solve(text).map(|_| ()).expect_err(name);
     let Error::Contradiction {
-        elements,
+        origins,
         open,
         fit,
         ..
@@ -323,8 +323,8 @@ fn expect_slip(name: &str, text: &str, expected: &[&str], gap: f64) -> Option<[f
     else {
         panic!("{name}: {error}");
     };
-    assert_eq!(elements, expected, "{name}");
-    assert_eq!(Some(&open.element), elements.last(), "{name}");
+    assert_eq!(origins, expected, "{name}");
+    assert_eq!(Some(&open.origin), origins.last(), "{name}");
     let off = (open.gap - gap).abs();
     assert!(off <= FOUR_DIGITS * gap + ROUNDING, "{name}: {error}");
     fit.as_ref().map(|fit| [fit.length, fit.present])

@@ -79,7 +79,7 @@ fn coordinate(solver: &Solver, path: &str) -> f64 {
 fn assert_open(name: &str, open: &[OpenJoint], expected: &[(&str, f64, f64)], part: f64) {
     assert_eq!(open.len(), expected.len(), "{name}: {open:?}");
     for (open, (element, gap, angle)) in open.iter().zip(expected) {
-        assert_eq!(open.element, *element, "{name}");
+        assert_eq!(open.origin, *element, "{name}");
         assert!(
             (open.gap - gap).abs() <= part * gap + 1e-14,
             "{name}: {open:?}, {gap}"

@@ -184,7 +184,7 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
 fn gaps(joints: &[OpenJoint]) -> Value {
     let joints = joints.iter();
     joints
-        .map(|joint| json!({ "element": joint.element, "gap": joint.gap, "angle": joint.angle }))
+        .map(|joint| json!({ "element": joint.origin, "gap": joint.gap, "angle": joint.angle }))
         .collect()
 }
 

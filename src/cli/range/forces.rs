@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::about;
 use super::follower::{Follower, at_speed, without_value};
 use super::search::{Largest, Measured, largest};
-use crate::kinematics::{Element, Error, ForceQuantity, Range, Reported, Solver};
+use crate::kinematics::{Error, ForceQuantity, Origin, Range, Reported, Solver};
 use crate::mechanism::{DriverId, shown};
 
 /// Largest reaction that is rounding, as a part of the largest effort: that of a pin beside the one
@@ -29,7 +29,7 @@ impl<'a> Loads<'a> {
         let joints = joints
             .filter(|(_, joint)| Reported::of(&joint.kind).has(0))
             .map(|(index, _)| index)
-            .filter(|joint| !open.contains(&Element::Joint(*joint)));
+            .filter(|joint| !open.contains(&Origin::Joint(*joint)));
         Self {
             joints: joints.collect(),
             follower,

@@ -10,7 +10,7 @@ use crate::fmi::model::Model;
 use crate::fmi::model_description::{Experiment, Member, ModelDescription, Terminal, Unknown};
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable, value_reference};
-use crate::kinematics::{Element, OutputSource, Structure, System, omitted_reactions};
+use crate::kinematics::{Origin, OutputSource, Structure, System, omitted_reactions};
 use crate::mechanism::{Mechanism, Order, Unit, rounded};
 
 /// Returns the model description of a mechanism's FMU for a version of the standard.
@@ -29,7 +29,7 @@ pub(super) fn describe_without<'a>(
     mechanism: &'a Arc<Mechanism>,
     structure: &Structure,
     standard: Version,
-    omitted: &[Element],
+    omitted: &[Origin],
 ) -> ModelDescription<'a, Quantity> {
     let mut variables = variables_without(mechanism, omitted);
     set_nominal(mechanism, &mut variables);

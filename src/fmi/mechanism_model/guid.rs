@@ -5,7 +5,7 @@ use std::sync::Arc;
 use uuid::Uuid;
 
 use super::variables::{FORCE_TABLE_VERSION, TABLE_VERSION};
-use crate::kinematics::{Element, omitted_reactions};
+use crate::kinematics::{Origin, omitted_reactions};
 use crate::mechanism::Mechanism;
 
 /// Name space of biela's GUIDs, an arbitrary constant.
@@ -20,13 +20,13 @@ pub fn guid(mechanism: &Mechanism) -> String {
 }
 
 /// Returns the GUID of the FMU that omits the reactions of some joints and constraints.
-pub(super) fn guid_without(mechanism: &Mechanism, omitted: &[Element]) -> String {
+pub(super) fn guid_without(mechanism: &Mechanism, omitted: &[Origin]) -> String {
     let mut content = format!("biela {TABLE_VERSION}\n{}", mechanism.canonical);
     if mechanism.has_dynamics() {
         content += &format!("\nforces {FORCE_TABLE_VERSION}");
     }
-    for element in omitted {
-        content += &format!("\nwithout {}", element.name(mechanism));
+    for origin in omitted {
+        content += &format!("\nwithout {}", origin.name(mechanism));
     }
     format!("{{{}}}", Uuid::new_v5(&NAMESPACE, content.as_bytes()))
 }

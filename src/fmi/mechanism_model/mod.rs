@@ -53,7 +53,7 @@ use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{
-    self, Carryover, Element, Forces, Path, Pose, Progress, Solution, Solver, omitted_reactions,
+    self, Forces, Origin, Path, Pose, Progress, Solution, Solver, SolverChoices, omitted_reactions,
 };
 use crate::mechanism::{
     DriverId, DriverSource, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource,
@@ -77,7 +77,7 @@ pub struct MechanismModel {
     solver: Solver,
     /// Pose of the file's own values, and the solver's choices there.
     file_pose: Arc<Pose>,
-    file_carryover: Carryover,
+    file_choices: SolverChoices,
     course: Course,
     /// Rates and forces at the solver's pose; the values of the drivers' rates have no meaning.
     solution: Solution,
@@ -104,7 +104,7 @@ struct Course {
     /// point.
     committed: Pose,
     /// The solver's choices at the committed pose, while it is at another one.
-    committed_carryover: Carryover,
+    committed_choices: SolverChoices,
     /// Rates of all drivers at the committed pose.
     committed_rates: Vec<Jet>,
     /// Whether the solver is at the committed pose.
@@ -134,7 +134,7 @@ impl Course {
         mechanism: &Mechanism,
         solution: &Solution,
         start: &Arc<Pose>,
-        carryover: &Carryover,
+        choices: &SolverChoices,
     ) -> Self {
         let drivers = mechanism.drivers.len();
         let contacts = solution.forces().map_or(0, Forces::contacts);
@@ -153,7 +153,7 @@ impl Course {
                 extrapolation: mechanism.simulation.extrapolation,
             },
             committed: Pose::clone(start),
-            committed_carryover: carryover.clone(),
+            committed_choices: choices.clone(),
             committed_rates: vec![Jet::constant(0.0); drivers],
             at_committed: true,
             freshness: Freshness::Stale,
@@ -195,13 +195,13 @@ impl MechanismModel {
     fn without(
         mechanism: Arc<Mechanism>,
         interface: Interface,
-        omitted: &[Element],
+        omitted: &[Origin],
     ) -> Result<Self, kinematics::Error> {
         let path = Path::new(&mechanism);
         let solver = Solver::assembled(Arc::clone(&mechanism), &path)?;
         let file_pose = Arc::new(solver.pose().clone());
-        let mut file_carryover = Carryover::default();
-        solver.carry_over(&mut file_carryover);
+        let mut file_choices = SolverChoices::default();
+        solver.copy_choices(&mut file_choices);
         let mut solution = Solution::new(&solver);
         solution.driver_rates.fill(Jet::constant(0.0));
         if mechanism.has_dynamics() {
@@ -213,9 +213,9 @@ impl MechanismModel {
             interface,
             reals: Reals::new(&mechanism, &variables),
             variables,
-            course: Course::new(&mechanism, &solution, &file_pose, &file_carryover),
+            course: Course::new(&mechanism, &solution, &file_pose, &file_choices),
             solution,
-            file_carryover,
+            file_choices,
             path,
             parts: None,
             dead_point: None,
@@ -315,8 +315,8 @@ impl Model for MechanismModel {
     }
 
     fn reset(&mut self) {
-        let (start, carryover) = (&self.file_pose, &self.file_carryover);
-        self.course = Course::new(&self.mechanism, &self.solution, start, carryover);
+        let (start, choices) = (&self.file_pose, &self.file_choices);
+        self.course = Course::new(&self.mechanism, &self.solution, start, choices);
         self.return_to_committed();
         self.solution.driver_rates.fill(Jet::constant(0.0));
         self.reals.invalidate();

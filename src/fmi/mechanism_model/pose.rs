@@ -107,7 +107,7 @@ impl MechanismModel {
     /// whether that pose belongs to the values set.
     pub(super) fn note_committed(&mut self) -> bool {
         if self.course.at_committed {
-            self.solver.carry_over(&mut self.course.committed_carryover);
+            self.solver.copy_choices(&mut self.course.committed_choices);
         }
         self.course.at_committed && self.course.freshness != Freshness::Stale
     }
@@ -252,7 +252,7 @@ impl MechanismModel {
     /// Puts the solver back to the committed pose, with the choices that it had there.
     pub(super) fn return_to_committed(&mut self) {
         let course = &self.course;
-        let resumed = (self.solver).resume(&course.committed, &course.committed_carryover);
+        let resumed = (self.solver).resume(&course.committed, &course.committed_choices);
         debug_assert!(resumed, "the choices are the solver's own");
         self.course.at_committed = true;
     }
@@ -260,7 +260,7 @@ impl MechanismModel {
     /// Lets the solver leave the committed pose: notes its choices, and begins with them.
     fn leave_committed(&mut self) {
         if self.course.at_committed {
-            self.solver.carry_over(&mut self.course.committed_carryover);
+            self.solver.copy_choices(&mut self.course.committed_choices);
         }
         self.return_to_committed();
         self.course.at_committed = false;
@@ -375,7 +375,7 @@ impl MechanismModel {
                 (*velocity, *acceleration) = (0.0, 0.0);
             }
         }
-        (self.course.committed_carryover).clone_from(&self.file_carryover);
+        (self.course.committed_choices).clone_from(&self.file_choices);
         self.return_to_committed();
         self.course.at_committed = false;
         let started = self.solver.start(&start_pose, &self.path);

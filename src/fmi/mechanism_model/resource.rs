@@ -9,7 +9,7 @@ use super::variables::Quantity;
 use crate::fmi::error::Failure;
 use crate::fmi::model_description::{Document, ModelDescription};
 use crate::fmi::package::{self, RuntimeLibrary};
-use crate::kinematics::{Element, omitted_reactions};
+use crate::kinematics::{Origin, omitted_reactions};
 use crate::mechanism::{Mechanism, Severity, Source};
 
 /// Name of the mechanism's file in `resources/`.
@@ -22,14 +22,14 @@ const OMITTED_REACTIONS: &str = "omitted_reactions.txt";
 
 /// Reads the mechanism from the folder of resources, and the joints and constraints whose reactions it
 /// omits.
-pub(super) fn read(resources: &Path) -> Result<(Arc<Mechanism>, Vec<Element>), Failure> {
+pub(super) fn read(resources: &Path) -> Result<(Arc<Mechanism>, Vec<Origin>), Failure> {
     let mechanism = Arc::new(read_mechanism(resources)?);
     let omitted = read_omitted(resources, &mechanism)?.unwrap_or_default();
     Ok((mechanism, omitted))
 }
 
 /// Reads the joints and constraints whose reactions are omitted, if they are listed.
-fn read_omitted(resources: &Path, mechanism: &Mechanism) -> Result<Option<Vec<Element>>, Failure> {
+fn read_omitted(resources: &Path, mechanism: &Mechanism) -> Result<Option<Vec<Origin>>, Failure> {
     let path = resources.join(OMITTED_REACTIONS);
     let text = match fs::read_to_string(&path) {
         Ok(text) => text,
@@ -39,12 +39,12 @@ fn read_omitted(resources: &Path, mechanism: &Mechanism) -> Result<Option<Vec<El
             return Err(Failure::Failed(format!("cannot read `{path}`: {error}")));
         }
     };
-    let joints = (0..mechanism.joints.len()).map(Element::Joint);
-    let constraints = (0..mechanism.constraints.len()).map(Element::Constraint);
-    let elements: Vec<_> = joints.chain(constraints).collect();
+    let joints = (0..mechanism.joints.len()).map(Origin::Joint);
+    let constraints = (0..mechanism.constraints.len()).map(Origin::Constraint);
+    let origins: Vec<_> = joints.chain(constraints).collect();
     let named = |name: &str| {
-        let mut elements = elements.iter();
-        let found = elements.find(|element| element.name(mechanism) == name);
+        let mut origins = origins.iter();
+        let found = origins.find(|origin| origin.name(mechanism) == name);
         found.copied().ok_or_else(|| {
             Failure::Failed(format!(
                 "`{OMITTED_REACTIONS}` names `{name}`, which is no joint or constraint of \
@@ -89,7 +89,7 @@ pub fn write_fmu(
 ) -> io::Result<()> {
     let omitted = omitted_reactions(mechanism);
     let listed = omitted.map(|omitted| {
-        let names = omitted.iter().map(|element| element.name(mechanism));
+        let names = omitted.iter().map(|origin| origin.name(mechanism));
         names.fold(String::new(), |list, name| list + name + "\n")
     });
     let mut resources = vec![(RESOURCE, source.text().as_bytes())];
@@ -192,7 +192,7 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
         let place = listed(OMITTED_REACTIONS).expect("the export lists them");
         assert_eq!(files.len(), 2);
         let solver = Solver::new(Arc::clone(&mechanism)).unwrap();
-        let all: Vec<_> = (0..mechanism.joints.len()).map(Element::Joint).collect();
+        let all: Vec<_> = (0..mechanism.joints.len()).map(Origin::Joint).collect();
         let here = omitted_reactions(&mechanism).expect("there are redundant constraints");
         assert!(!here.is_empty(), "indeterminate reactions are omitted");
         let mut guids = Vec::new();
@@ -200,7 +200,7 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
             let description =
                 describe_without(&mechanism, solver.structure(), Version::Fmi2, omitted);
             let mut files = files.clone();
-            let names = omitted.iter().map(|element| element.name(&mechanism));
+            let names = omitted.iter().map(|origin| origin.name(&mechanism));
             let list: String = names.map(|name| format!("{name}\n")).collect();
             if omitted == here {
                 assert_eq!(files[place].1, list);

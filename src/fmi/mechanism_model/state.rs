@@ -8,8 +8,8 @@ use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
 use crate::kinematics::{
-    Alignment, BlockCarryover, Carryover, CheckedSegment, Crossing, Element, Member, PivotOrder,
-    Polynomial, Pose, Progress, Relation,
+    Alignment, BlockChoices, CheckedSegment, Crossing, Member, Origin, PivotOrder, Polynomial,
+    Pose, Progress, Relation, SolverChoices,
 };
 use crate::mechanism::{BodyId, DriverId, Extrapolation, Jet, RateSource};
 
@@ -25,7 +25,7 @@ pub struct MechanismState {
     driver_rates: Vec<Jet>,
     /// The solver's pose, the committed one or that of values set since, and its choices there.
     present: Pose,
-    present_carryover: Carryover,
+    present_choices: SolverChoices,
 }
 
 impl MechanismModel {
@@ -35,11 +35,11 @@ impl MechanismModel {
             self.return_to_committed();
         }
         self.set_freshness(self.course.freshness.min(Freshness::Pose));
-        let mut present_carryover = Carryover::default();
-        self.solver.carry_over(&mut present_carryover);
+        let mut present_choices = SolverChoices::default();
+        self.solver.copy_choices(&mut present_choices);
         let course = &mut self.course;
         let present = if course.at_committed {
-            course.committed_carryover.clone_from(&present_carryover);
+            course.committed_choices.clone_from(&present_choices);
             course.committed.clone()
         } else {
             self.solver.pose().clone()
@@ -48,14 +48,14 @@ impl MechanismModel {
             course: course.clone(),
             driver_rates: self.solution.driver_rates.clone(),
             present,
-            present_carryover,
+            present_choices,
         }
     }
 
     pub(super) fn restore_state(&mut self, state: &MechanismState) {
         self.course.clone_from(&state.course);
         (self.solution.driver_rates).copy_from_slice(&state.driver_rates);
-        let resumed = (self.solver).resume(&state.present, &state.present_carryover);
+        let resumed = (self.solver).resume(&state.present, &state.present_choices);
         debug_assert!(resumed, "the choices were checked when the state was read");
         self.reals.invalidate();
         self.parts = None;
@@ -79,12 +79,12 @@ impl MechanismModel {
             }
         }
         self.check_pose(&state.course.start_pose)?;
-        for (pose, carryover) in [
-            (&state.course.committed, &state.course.committed_carryover),
-            (&state.present, &state.present_carryover),
+        for (pose, choices) in [
+            (&state.course.committed, &state.course.committed_choices),
+            (&state.present, &state.present_choices),
         ] {
             self.check_pose(pose)?;
-            if !self.solver.resume(pose, carryover) {
+            if !self.solver.resume(pose, choices) {
                 return Err("its choice of equations is none of this mechanism".to_owned());
             }
         }
@@ -126,7 +126,7 @@ impl MechanismState {
             course,
             driver_rates,
             present,
-            present_carryover,
+            present_choices,
         } = self;
         let Course {
             time,
@@ -134,7 +134,7 @@ impl MechanismState {
             parameters,
             rule,
             committed,
-            committed_carryover,
+            committed_choices,
             committed_rates,
             at_committed,
             freshness,
@@ -178,8 +178,8 @@ impl MechanismState {
         let sources = sources.iter_mut().flatten();
         codec.each(sources, |codec, source| codec.one_of(source, &Source::ALL))?;
         let (rows, unknowns) = (committed.turns.len(), committed.q.len());
-        for carryover in [committed_carryover, present_carryover] {
-            visit_carryover(carryover, rows, unknowns, codec)?;
+        for choices in [committed_choices, present_choices] {
+            visit_choices(choices, rows, unknowns, codec)?;
         }
         for pose in [Arc::make_mut(start_pose), committed, present] {
             visit_pose(pose, codec)?;
@@ -188,16 +188,16 @@ impl MechanismState {
     }
 }
 
-fn visit_carryover(
-    carryover: &mut Carryover,
+fn visit_choices(
+    choices: &mut SolverChoices,
     rows: usize,
     unknowns: usize,
     codec: &mut impl Codec,
 ) -> Result<(), Unreadable> {
-    let Carryover { set_aside, blocks } = carryover;
+    let SolverChoices { set_aside, blocks } = choices;
     visit_indices(set_aside, rows, codec)?;
-    codec.resize(blocks, unknowns, BlockCarryover::default)?;
-    for BlockCarryover { pivots, segment } in blocks {
+    codec.resize(blocks, unknowns, BlockChoices::default)?;
+    for BlockChoices { pivots, segment } in blocks {
         for PivotOrder { rows, columns } in pivots {
             visit_indices(rows, unknowns, codec)?;
             visit_indices(columns, unknowns, codec)?;
@@ -305,17 +305,17 @@ fn visit_alignment(
     codec.each(members, |codec, member| {
         let (mut kind, mut index) = match *member {
             Member::Body(body) => (0, body.0),
-            Member::Element(Element::Joint(joint)) => (1, joint),
-            Member::Element(Element::Constraint(held)) => (2, held),
-            Member::Element(Element::Driver(driver)) => (3, driver.0),
+            Member::Origin(Origin::Joint(joint)) => (1, joint),
+            Member::Origin(Origin::Constraint(held)) => (2, held),
+            Member::Origin(Origin::Driver(driver)) => (3, driver.0),
         };
         codec.index(&mut kind)?;
         codec.index(&mut index)?;
         *member = match kind {
             0 => Member::Body(BodyId(index)),
-            1 => Member::Element(Element::Joint(index)),
-            2 => Member::Element(Element::Constraint(index)),
-            3 => Member::Element(Element::Driver(DriverId(index))),
+            1 => Member::Origin(Origin::Joint(index)),
+            2 => Member::Origin(Origin::Constraint(index)),
+            3 => Member::Origin(Origin::Driver(DriverId(index))),
             _ => return Err(Unreadable),
         };
         Ok(())

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::rule::{EXTRAPOLATION, RATES};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
-use crate::kinematics::{Dependencies, Element, Output, OutputSource, omitted_reactions};
+use crate::kinematics::{Dependencies, Origin, Output, OutputSource, omitted_reactions};
 use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Unit};
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
@@ -54,7 +54,7 @@ pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
 /// Returns the variables without the reactions of some joints and constraints.
 pub(super) fn variables_without(
     mechanism: &Mechanism,
-    omitted: &[Element],
+    omitted: &[Origin],
 ) -> Vec<Variable<Quantity>> {
     let mut table = Table::default();
     table.add_inputs(mechanism);
@@ -205,7 +205,7 @@ impl Table {
         );
     }
 
-    fn add_outputs(&mut self, mechanism: &Mechanism, omitted: &[Element]) {
+    fn add_outputs(&mut self, mechanism: &Mechanism, omitted: &[Origin]) {
         for output in Output::of_host(mechanism, omitted) {
             let quantity = Quantity::Output(output.source);
             let unit = match output.source {

@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 
 use crate::kinematics::constraint::Contour;
 use crate::kinematics::constraint::configuration::{Configuration, ProfileId, perp};
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::mechanism::{
     CamFollower, Expression, Interval, Jet3, JointKind, MarkerId, ProfileInForce, RackSide,
@@ -145,7 +145,7 @@ const TOLERANCE: f64 = 1e-6;
 
 /// Returns the joints that do not fit their own numbers at the pose, in the order of declaration.
 pub(in crate::kinematics) fn geometry_warnings(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
 ) -> Vec<GeometryWarning> {
     let check = Check {
@@ -153,7 +153,7 @@ pub(in crate::kinematics) fn geometry_warnings(
         parameters: &state.pose.parameters,
     };
     let mut profiles = (0..).map(ProfileId);
-    let joints = model.system.mechanism().joints.iter();
+    let joints = compiled.system.mechanism().joints.iter();
     let warnings = joints.filter_map(|joint| {
         let centres = [joint.from, joint.to];
         let kind = match &joint.kind {

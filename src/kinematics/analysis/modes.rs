@@ -7,7 +7,7 @@ use crate::kinematics::assembly::search::BranchSearch;
 use crate::kinematics::assembly::turns::choose_turns;
 use crate::kinematics::error::Error;
 use crate::kinematics::path::Path;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::redundancy::opened;
 use crate::kinematics::state::{Pose, State};
 use crate::kinematics::system::System;
@@ -50,31 +50,34 @@ const MOST_WORK: f64 = 20_000.0;
 /// # Errors
 ///
 /// [`Error::NotFinite`] for estimates that have no value with the parameters in force.
-pub(in crate::kinematics) fn modes(model: &mut Model, state: &mut State) -> Result<Modes, Error> {
-    let estimate = estimate(&model.system, &state.pose.parameters)?;
+pub(in crate::kinematics) fn modes(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+) -> Result<Modes, Error> {
+    let estimate = estimate(&compiled.system, &state.pose.parameters)?;
     let home = state.pose.clone();
-    state.release_crossings(model);
+    state.release_crossings(compiled);
     let effort = SearchEffort::Anywhere(STARTS);
     let Closed {
         poses,
         starts,
         complete,
-    } = close_all(model, state, &estimate, effort);
+    } = close_all(compiled, state, &estimate, effort);
     let mut others: Vec<Mode> = Vec::new();
     for pose in poses {
         state.pose.q.copy_from_slice(&pose.q);
-        state.move_to_pose(&model.system);
-        if is_at(&model.system, state, &home.q) {
+        state.move_to_pose(&compiled.system);
+        if is_at(&compiled.system, state, &home.q) {
             continue;
         }
         others.push(Mode {
-            rcond: state.rcond(model),
-            distance: distance(&model.system, state, &estimate),
+            rcond: state.rcond(compiled),
+            distance: distance(&compiled.system, state, &estimate),
             q: pose.q,
         });
     }
     others.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    state.restore(model, &home);
+    state.restore(compiled, &home);
     Ok(Modes {
         others,
         starts,
@@ -90,12 +93,12 @@ pub(in crate::kinematics) fn modes(model: &mut Model, state: &mut State) -> Resu
 /// [`Error::NotFinite`], [`Error::NotPositive`] and [`Error::NoMotion`] for values without a
 /// mechanism.
 pub(in crate::kinematics) fn poses(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     path: &Path,
 ) -> Result<Vec<Pose>, Error> {
-    let estimate = go_to_estimate(model, state, path)?;
-    Ok(close_all(model, state, &estimate, SearchEffort::Quick).poses)
+    let estimate = go_to_estimate(compiled, state, path)?;
+    Ok(close_all(compiled, state, &estimate, SearchEffort::Quick).poses)
 }
 
 /// The poses that a search finds.
@@ -110,12 +113,12 @@ struct Closed {
 
 /// Searches for poses with the time, the parameters and the drivers of the present one.
 fn close_all(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     estimate: &[f64],
     effort: SearchEffort,
 ) -> Closed {
-    let mut search = BranchSearch::new(model, state, estimate, effort, MOST_WORK);
+    let mut search = BranchSearch::new(compiled, state, estimate, effort, MOST_WORK);
     let mut found = Vec::new();
     while found.len() < MOST_MODES && search.next() {
         found.push(search.pose());
@@ -125,9 +128,9 @@ fn close_all(
     let mut poses: Vec<Pose> = Vec::new();
     for q in found {
         state.pose.q.copy_from_slice(&q);
-        choose_turns(&model.system, state, estimate);
-        let is_known = |known: &Pose| is_at(&model.system, state, &known.q);
-        if opened(model, state).is_none() && !poses.iter().any(is_known) {
+        choose_turns(&compiled.system, state, estimate);
+        let is_known = |known: &Pose| is_at(&compiled.system, state, &known.q);
+        if opened(compiled, state).is_none() && !poses.iter().any(is_known) {
             poses.push(state.pose.clone());
         }
     }

@@ -10,9 +10,9 @@ use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::{Error, OpenJoint};
-use crate::kinematics::origin::Element;
+use crate::kinematics::origin::Origin;
 use crate::kinematics::path::Path;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Mechanism};
 
@@ -46,28 +46,28 @@ impl Play {
         let Error::Contradiction { open, nearest, .. } = error else {
             return None;
         };
-        let (mut model, _) = Model::new(Arc::clone(mechanism));
-        if !is_small(&model.system) {
+        let (mut compiled, _) = CompiledMechanism::new(Arc::clone(mechanism));
+        if !is_small(&compiled.system) {
             return None;
         }
-        let mut state = State::new(&model.system);
-        go_to_estimate(&mut model, &mut state, &Path::new(mechanism)).ok()?;
+        let mut state = State::new(&compiled.system);
+        go_to_estimate(&mut compiled, &mut state, &Path::new(mechanism)).ok()?;
         state.at.set_pose(mechanism, &nearest.q);
         let drivers = &mechanism.drivers;
         let is_angle = |driver: &usize| drivers[*driver].coordinate.kind.is_angle();
         let first = (!drivers.is_empty()).then_some(0);
         let driver = (0..drivers.len()).find(is_angle).or(first)?;
-        let all: Vec<_> = (0..model.system.equations().len()).collect();
+        let all: Vec<_> = (0..compiled.system.equations().len()).collect();
         let extent = if is_angle(&driver) {
             TAU
         } else {
-            2.0 * model.system.driver_row(DriverId(driver)).size(&state.at)
+            2.0 * compiled.system.driver_row(DriverId(driver)).size(&state.at)
         };
         let start = state.pose.drivers[driver];
         let mut sweep = Sweep {
-            problem: LeastSquares::of_all(&model.system, &all),
-            own: model.system.rows_of(&[nearest.open]),
-            element: nearest.open,
+            problem: LeastSquares::of_all(&compiled.system, &all),
+            own: compiled.system.rows_of(&[nearest.open]),
+            origin: nearest.open,
             driver,
             start,
             step: extent / POSES as f64,
@@ -77,7 +77,7 @@ impl Play {
                 angle: 0.0,
                 ..open.clone()
             },
-            model: &model,
+            compiled: &compiled,
             state: &mut state,
         };
         let up = sweep.follow(1.0)?;
@@ -94,10 +94,10 @@ impl Play {
 
 /// A motion of one driver with one joint or constraint open.
 struct Sweep<'a> {
-    model: &'a Model,
+    compiled: &'a CompiledMechanism,
     state: &'a mut State,
     problem: LeastSquares,
-    element: Element,
+    origin: Origin,
     /// Its rows.
     own: Vec<usize>,
     driver: usize,
@@ -115,7 +115,7 @@ impl Sweep<'_> {
     /// driver's limits permit. Returns the number of places behind the start; `None` if the others
     /// do not close there.
     fn follow(&mut self, sign: f64) -> Option<usize> {
-        let mechanism = Arc::clone(self.model.system.mechanism());
+        let mechanism = Arc::clone(self.compiled.system.mechanism());
         let driver = &mechanism.drivers[self.driver];
         let mut here = self.home.to_vec();
         let mut before: Option<Vec<f64>> = None;
@@ -135,7 +135,7 @@ impl Sweep<'_> {
                 None => here.clone(),
             };
             self.state.at.set_pose(&mechanism, &ahead);
-            gather(self.model, self.state, &mut self.problem, self.element);
+            gather(self.compiled, self.state, &mut self.problem, self.origin);
             if !self.others_close() {
                 return place.checked_sub(1);
             }
@@ -151,7 +151,7 @@ impl Sweep<'_> {
 
     /// Returns whether all other rows hold.
     fn others_close(&self) -> bool {
-        let system = &self.model.system;
+        let system = &self.compiled.system;
         let mut others = (0..system.equations().len()).filter(|row| !self.own.contains(row));
         others.all(|row| {
             let value = system.evaluate_row(row, self.state.values(), |_, _| {});
@@ -160,7 +160,7 @@ impl Sweep<'_> {
     }
 
     fn note_gap(&mut self) {
-        let open = open_joints(self.model, self.state, &self.own, 0.0);
+        let open = open_joints(self.compiled, self.state, &self.own, 0.0);
         for (_, joint) in open {
             self.most.gap = self.most.gap.max(joint.gap);
             self.most.angle = self.most.angle.max(joint.angle);

@@ -6,7 +6,7 @@ use super::transmission::Passages;
 use crate::kinematics::continuation::{PathTracker, Reason};
 use crate::kinematics::newton::Limits;
 use crate::kinematics::path::{Curve, Path, Rates};
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::{Pose, State};
 use crate::mechanism::{DriverId, Jet};
@@ -148,14 +148,14 @@ pub(super) fn is_within(value: f64, [below, above]: [Option<f64>; 2]) -> bool {
 /// Finds the range of one driver from the present pose, with the other drivers, time and
 /// parameters held. See [`Solver::range`](crate::kinematics::Solver::range).
 pub(in crate::kinematics) fn range(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     tracker: &mut PathTracker,
     driver: DriverId,
     settings: &RangeSettings,
 ) -> Range {
     let start = state.pose.clone();
-    let of_driver = &model.system.mechanism().drivers[driver.index()];
+    let of_driver = &compiled.system.mechanism().drivers[driver.index()];
     let [from, to] = settings.bounds;
     let mut explorer = Explorer {
         bounds: [from.or(of_driver.min), to.or(of_driver.max)],
@@ -163,9 +163,9 @@ pub(in crate::kinematics) fn range(
         driver,
         settings,
         start: &start,
-        passages: Passages::new(model),
+        passages: Passages::new(compiled),
         rates: Rates::new(start.q.len()),
-        model,
+        compiled,
         state,
         crossings: Vec::new(),
     };
@@ -206,7 +206,7 @@ struct Place {
 
 /// The exploration of a driver's range.
 struct Explorer<'a> {
-    model: &'a mut Model,
+    compiled: &'a mut CompiledMechanism,
     state: &'a mut State,
     tracker: &'a mut PathTracker,
     driver: DriverId,
@@ -224,10 +224,10 @@ impl Explorer<'_> {
     fn explore(&mut self, sign: f64, samples: &mut Vec<Place>) -> End {
         let index = self.driver.index();
         let from = self.start.drivers[index];
-        let driver = &self.model.system.mechanism().drivers[index];
+        let driver = &self.compiled.system.mechanism().drivers[index];
         let is_angle = driver.coordinate.kind.is_angle();
         let size = self
-            .model
+            .compiled
             .system
             .driver_row(self.driver)
             .size(&self.state.at);
@@ -272,7 +272,7 @@ impl Explorer<'_> {
                 }
             } else if count.is_multiple_of(per_turn) {
                 let turns = count / per_turn;
-                let system = &self.model.system;
+                let system = &self.compiled.system;
                 let turned = self.state.whole_turns_since(system, self.start);
                 if end.is_none() && turned.is_some() {
                     return End::Turns(turns);
@@ -305,7 +305,7 @@ impl Explorer<'_> {
         } else {
             self.divide(&from, &reached, MOST_HALVINGS, samples);
         }
-        self.state.restore(self.model, &reached);
+        self.state.restore(self.compiled, &reached);
         let place = self.place();
         let limit = match &end {
             Some(End::Singular(point)) => self.place_at(point, &place),
@@ -321,7 +321,7 @@ impl Explorer<'_> {
         let mut from = before.clone();
         let [start, end] = [before, reached].map(|pose| self.value_of(pose));
         for crossing in self.tracker.crossed().to_vec() {
-            let mechanism = self.model.system.mechanism();
+            let mechanism = self.compiled.system.mechanism();
             let center = crossing.center;
             self.crossings.push(ChangePoint {
                 value: center,
@@ -333,7 +333,7 @@ impl Explorer<'_> {
             if (center - last).abs() <= off || (center - end).abs() <= off {
                 continue;
             }
-            self.state.restore(self.model, &from);
+            self.state.restore(self.compiled, &from);
             if self.track(center).is_ok() {
                 let (place, pose) = (self.place(), self.state.pose.clone());
                 self.divide(&from, &pose, MOST_HALVINGS, samples);
@@ -349,7 +349,7 @@ impl Explorer<'_> {
         if halvings == 0 || self.motion(from, to) <= 1.0 {
             return;
         }
-        self.state.restore(self.model, from);
+        self.state.restore(self.compiled, from);
         let middle = 0.5 * (self.value_of(from) + self.value_of(to));
         if self.track(middle).is_ok() {
             let (place, pose) = (self.place(), self.state.pose.clone());
@@ -373,7 +373,7 @@ impl Explorer<'_> {
             .ceil()
             .clamp(1.0, MOST_BEFORE_LIMIT);
         let ahead = limit - self.value_of(from);
-        self.state.restore(self.model, from);
+        self.state.restore(self.compiled, from);
         let mut part = 1.0;
         while part < parts {
             let left = 1.0 - part / parts;
@@ -389,7 +389,7 @@ impl Explorer<'_> {
     /// between two samples.
     fn motion(&self, from: &Pose, to: &Pose) -> f64 {
         let largest = LARGEST_MOTION * TAU / f64::from(self.settings.samples.max(1));
-        let (system, size) = (&self.model.system, self.state.at.size());
+        let (system, size) = (&self.compiled.system, self.state.at.size());
         let unknowns = from.q.iter().zip(&to.q).enumerate();
         let moved = unknowns.map(|(column, (from, to))| {
             (to - from).abs() / (largest * system.column_scale(column, size))
@@ -407,12 +407,14 @@ impl Explorer<'_> {
         let mut pose = stopped.sample.pose.clone();
         pose.q.clone_from(&point.q);
         pose.drivers.clone_from(&point.drivers);
-        self.state.restore(self.model, &pose);
-        let Self { model, state, .. } = self;
-        let mut block_state = state.block_state(&model.system);
+        self.state.restore(self.compiled, &pose);
+        let Self {
+            compiled, state, ..
+        } = self;
+        let mut block_state = state.block_state(&compiled.system);
         // The block itself, and those that it reads, are there.
         let is_singular = |columns: &[usize]| columns.iter().any(|&k| point.free[k] != 0.0);
-        let blocks = model.plan.blocks.iter_mut();
+        let blocks = compiled.plan.blocks.iter_mut();
         let mut others = blocks.filter(|block| !is_singular(block.columns()));
         let closed = others.all(|block| block.close(&mut block_state, Limits::STEP).is_ok());
         state.accept_bodies();
@@ -421,7 +423,7 @@ impl Explorer<'_> {
             sample: self.sample(),
             slopes: stopped.slopes.clone(),
         });
-        self.state.restore(self.model, &stopped.sample.pose);
+        self.state.restore(self.compiled, &stopped.sample.pose);
         place
     }
 
@@ -430,7 +432,7 @@ impl Explorer<'_> {
         let index = self.driver.index();
         let mut path = held_path(self.start);
         path.curves[index] = Curve::held(value, self.state.pose.drivers[index]);
-        let tracked = self.tracker.track(self.model, self.state, &path, false);
+        let tracked = self.tracker.track(self.compiled, self.state, &path, false);
         tracked.map(drop).map_err(|blocked| blocked.reason)
     }
 
@@ -440,7 +442,7 @@ impl Explorer<'_> {
         let count = if places.is_empty() {
             0
         } else {
-            self.model.measures.len()
+            self.compiled.measures.len()
         };
         let measures =
             (0..count).map(|measure| [1.0, -1.0].map(|sign| self.extreme(measure, sign, places)));
@@ -492,7 +494,7 @@ impl Explorer<'_> {
         // At most one of them is a limit.
         let is_limit = a.sample.rcond < b.sample.rcond;
         let from = if is_limit { b } else { a };
-        self.state.restore(self.model, &from.sample.pose);
+        self.state.restore(self.compiled, &from.sample.pose);
         let mut best: Option<Extreme> = None;
         let mut at = 0.5 * (low + high);
         let mut last = [width; 2];
@@ -500,7 +502,7 @@ impl Explorer<'_> {
             if self.track(at).is_err() || !self.solve_rates() {
                 break;
             }
-            let jet = (self.state).measure(&*self.model.measures[measure], &self.rates);
+            let jet = (self.state).measure(&*self.compiled.measures[measure], &self.rates);
             if best.is_none_or(|best| sign * jet.value <= sign * best.value) {
                 best = Some(Extreme {
                     value: jet.value,
@@ -536,20 +538,20 @@ impl Explorer<'_> {
             let rate = f64::from(u8::from(driver == of_driver));
             Jet::new(0.0, [rate, 0.0])
         };
-        let solved = self.state.solve_rates(self.model, unit, &mut self.rates);
+        let solved = self.state.solve_rates(self.compiled, unit, &mut self.rates);
         solved.is_ok()
     }
 
     /// Returns to the start.
     fn restore(&mut self) {
-        self.state.restore(self.model, self.start);
+        self.state.restore(self.compiled, self.start);
     }
 
     /// Returns the present pose as a sample with the slopes of the measures.
     fn place(&mut self) -> Place {
         let sample = self.sample();
         let has_rates = self.solve_rates();
-        let slopes = (self.model.measures.iter()).map(|measure| {
+        let slopes = (self.compiled.measures.iter()).map(|measure| {
             if has_rates {
                 self.state.measure(&**measure, &self.rates).first()
             } else {
@@ -566,12 +568,12 @@ impl Explorer<'_> {
     fn sample(&mut self) -> Sample {
         Sample {
             driver: self.state.pose.drivers[self.driver.index()],
-            rcond: self.state.rcond(self.model),
-            residual: self.state.residual(&self.model.system),
+            rcond: self.state.rcond(self.compiled),
+            residual: self.state.residual(&self.compiled.system),
             transmission: (self.settings.transmission)
-                .then(|| self.passages.smallest(self.model, self.state))
+                .then(|| self.passages.smallest(self.compiled, self.state))
                 .flatten(),
-            measures: (self.model.measures.iter())
+            measures: (self.compiled.measures.iter())
                 .map(|measure| measure.value(&self.state.at))
                 .collect(),
             pose: self.state.pose.clone(),

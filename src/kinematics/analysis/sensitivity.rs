@@ -18,7 +18,7 @@ use crate::kinematics::constraint::moving_configuration::{
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::path::Rates;
 use crate::kinematics::plan::JacobianFactors;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::{Kind, NearPoint, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::{System, Target};
@@ -171,7 +171,7 @@ impl Sensitivity<'_> {
                 return None;
             };
             let value = evaluate(expression, &self.parameters);
-            Some((value, expression, equation.element.describe(mechanism)))
+            Some((value, expression, equation.origin.describe(mechanism)))
         });
         let motions = mechanism.drivers.iter().zip(&self.drivers).enumerate();
         let motions = motions.filter_map(|(index, (driver, value))| match driver.motion() {
@@ -228,15 +228,15 @@ impl State {
     /// [`Error::Singular`] where the pose is singular.
     pub(in crate::kinematics) fn sensitivity<'a>(
         &mut self,
-        model: &'a Model,
+        compiled: &'a CompiledMechanism,
         rates: &Rates,
         driver_rates: &[Jet],
         direction: &Direction,
     ) -> Result<Sensitivity<'a>, Error> {
-        let mut factors = self.factorised(model)?;
-        let mut along = self.unsolved(model, rates, driver_rates, direction);
-        self.solve_changes(model, &mut factors, &mut along, Order::Acceleration);
-        self.keep_factors(model, factors);
+        let mut factors = self.factorised(compiled)?;
+        let mut along = self.unsolved(compiled, rates, driver_rates, direction);
+        self.solve_changes(compiled, &mut factors, &mut along, Order::Acceleration);
+        self.keep_factors(compiled, factors);
         Ok(along)
     }
 
@@ -248,31 +248,31 @@ impl State {
     /// [`Error::Singular`] where the pose is singular, and those of `each`.
     pub(in crate::kinematics) fn sensitivities<'a>(
         &mut self,
-        model: &'a mut Model,
+        compiled: &'a mut CompiledMechanism,
         rates: &Rates,
         driver_rates: &[Jet],
         sought: (&[Direction], Order),
         mut each: impl FnMut(Sensitivity<'a>) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let (directions, order) = sought;
-        let near = near_point(model, self);
+        let near = near_point(compiled, self);
         let motion = (rates, driver_rates);
         let found = near
             .as_ref()
-            .and_then(|point| self.interpolated_changes(point, model, motion, sought));
-        let model: &'a Model = model;
+            .and_then(|point| self.interpolated_changes(point, compiled, motion, sought));
+        let compiled: &'a CompiledMechanism = compiled;
         let has_all = |found: &Vec<f64>| !found.iter().any(|change| change.is_nan());
         let is_at = near.as_ref().is_some_and(|point| point.is_at);
         let is_solved = !is_at && !found.as_ref().is_some_and(has_all);
-        let mut factors = is_solved.then(|| self.factorised(model)).transpose()?;
+        let mut factors = is_solved.then(|| self.factorised(compiled)).transpose()?;
         let unknowns = self.pose.q.len();
         let done = directions
             .iter()
             .enumerate()
             .try_for_each(|(k, direction)| {
-                let mut along = self.unsolved(model, rates, driver_rates, direction);
+                let mut along = self.unsolved(compiled, rates, driver_rates, direction);
                 if let Some(factors) = &mut factors {
-                    self.solve_changes(model, factors, &mut along, order);
+                    self.solve_changes(compiled, factors, &mut along, order);
                 }
                 if let Some(point) = &near {
                     let orders = order as usize + 1;
@@ -285,13 +285,13 @@ impl State {
                         });
                     }
                     if is_at {
-                        along.fault = Some(point.no_limit(model, NoLimit::Derivatives));
+                        along.fault = Some(point.no_limit(compiled, NoLimit::Derivatives));
                     }
                 }
                 each(along)
             });
         if let Some(factors) = factors {
-            self.keep_factors(model, factors);
+            self.keep_factors(compiled, factors);
         }
         done
     }
@@ -302,13 +302,13 @@ impl State {
     fn interpolated_changes(
         &mut self,
         point: &NearPoint,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         (rates, driver_rates): (&Rates, &[Jet]),
         (directions, highest): (&[Direction], Order),
     ) -> Option<Vec<f64>> {
         let (unknowns, orders) = (self.pose.q.len(), highest as usize + 1);
         let size = self.at.size();
-        let scales = (0..unknowns).map(|q| model.system.column_scale(q, size));
+        let scales = (0..unknowns).map(|q| compiled.system.column_scale(q, size));
         let scales: Vec<f64> = scales.collect();
         // Radians per second of the fastest body, or one at rest: with it changes of all orders
         // compare, and those that are zero up to rounding are seen to be.
@@ -328,24 +328,24 @@ impl State {
             scales[index % unknowns] * rate.powi(order as i32)
         };
         let scaled = point.interpolate(
-            model,
+            compiled,
             self,
             driver_rates,
             |index| Kind {
                 group: index / (unknowns * orders),
                 level: index / unknowns % orders,
             },
-            |model, state, place, values| {
-                let mut factors = state.factorised(model)?;
+            |compiled, state, place, values| {
+                let mut factors = state.factorised(compiled)?;
                 for direction in directions {
                     let (rates, drivers) = (place.rates, place.driver_rates);
-                    let mut along = state.unsolved(model, rates, drivers, direction);
-                    state.solve_changes(model, &mut factors, &mut along, highest);
+                    let mut along = state.unsolved(compiled, rates, drivers, direction);
+                    state.solve_changes(compiled, &mut factors, &mut along, highest);
                     for order in 0..orders {
                         values.extend((0..unknowns).map(|q| along.at.change_of(order, q)));
                     }
                 }
-                state.keep_factors(model, factors);
+                state.keep_factors(compiled, factors);
                 for (index, value) in values.iter_mut().enumerate() {
                     *value /= scale(index);
                 }
@@ -357,11 +357,11 @@ impl State {
     }
 
     /// Factorises the Jacobian at the pose.
-    fn factorised(&mut self, model: &Model) -> Result<JacobianFactors, Error> {
-        let mut factors = self.take_factors(model);
-        let factorised = factors.factorise(&model.system, &self.at);
+    fn factorised(&mut self, compiled: &CompiledMechanism) -> Result<JacobianFactors, Error> {
+        let mut factors = self.take_factors(compiled);
+        let factorised = factors.factorise(&compiled.system, &self.at);
         if factorised.is_err() {
-            self.keep_factors(model, factors);
+            self.keep_factors(compiled, factors);
             return Err(SINGULAR_HERE);
         }
         Ok(factors)
@@ -370,12 +370,12 @@ impl State {
     /// Returns the motion along a direction, on which the bodies have no changes yet.
     fn unsolved<'a>(
         &self,
-        model: &'a Model,
+        compiled: &'a CompiledMechanism,
         rates: &Rates,
         driver_rates: &[Jet],
         direction: &Direction,
     ) -> Sensitivity<'a> {
-        let system = &model.system;
+        let system = &compiled.system;
         let mechanism = system.mechanism();
         let changes = self.pose.parameters.iter().zip(&direction.parameters);
         let mut parameters: Vec<_> = changes
@@ -427,7 +427,7 @@ impl State {
             profiles,
             drivers,
             parameters,
-            measures: &model.measures,
+            measures: &compiled.measures,
             system,
             fault: None,
         }
@@ -436,12 +436,12 @@ impl State {
     /// Solves the changes of q and of its derivatives up to an order.
     fn solve_changes(
         &self,
-        model: &Model,
+        compiled: &CompiledMechanism,
         factors: &mut JacobianFactors,
         along: &mut Sensitivity<'_>,
         highest: Order,
     ) {
-        let system = &model.system;
+        let system = &compiled.system;
         let targets: Vec<_> = system
             .equations()
             .iter()
@@ -462,9 +462,9 @@ impl State {
             if along.fault.is_none()
                 && let Some(row) = side.iter().position(|side| !side.is_finite())
             {
-                let element = system.equations()[row].element;
+                let origin = system.equations()[row].origin;
                 along.fault = Some(Error::NoDerivative {
-                    what: element.describe(system.mechanism()),
+                    what: origin.describe(system.mechanism()),
                     by: None,
                 });
             }

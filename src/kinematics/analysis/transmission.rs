@@ -21,8 +21,8 @@ use nalgebra::{Matrix2, Vector2};
 use crate::kinematics::constraint::configuration::{Configuration, perp};
 use crate::kinematics::constraint::{Axis, Gradient, Relation, point_velocity};
 use crate::kinematics::linear::{dot, nan_or_larger, subtract};
-use crate::kinematics::origin::Element;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::origin::Origin;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockSolver, JacobianFactors};
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
@@ -49,8 +49,8 @@ pub(super) struct Passages(Vec<Passage>);
 impl Passages {
     /// Lists the joints of a mechanism that has a loop or a group of bodies that are solved
     /// together; all others transmit nothing.
-    pub(super) fn new(model: &Model) -> Self {
-        let system = &model.system;
+    pub(super) fn new(compiled: &CompiledMechanism) -> Self {
+        let system = &compiled.system;
         let mechanism = system.mechanism();
         let is_group = |block: &BlockSolver| {
             !matches!(
@@ -62,7 +62,7 @@ impl Passages {
         let kinds = kinds.chain(mechanism.drivers.iter().map(|driver| &driver.coordinate));
         let cylinders = kinds.filter(|own| own.kind == CoordinateKind::Distance);
         let has_loop = mechanism.joints.len() + cylinders.count() > mechanism.bodies.len();
-        if !has_loop && !model.plan.blocks.iter().any(is_group) {
+        if !has_loop && !compiled.plan.blocks.iter().any(is_group) {
             return Self(Vec::new());
         }
         let rows = 0..system.equations().len();
@@ -70,15 +70,15 @@ impl Passages {
     }
 
     /// Returns the smallest transmission angle at the pose \[rad\], `None` without any joint.
-    pub(super) fn smallest(&self, model: &Model, state: &mut State) -> Option<f64> {
+    pub(super) fn smallest(&self, compiled: &CompiledMechanism, state: &mut State) -> Option<f64> {
         if self.0.is_empty() {
             return None;
         }
-        let mut factors = state.take_factors(model);
-        let system = &model.system;
+        let mut factors = state.take_factors(compiled);
+        let system = &compiled.system;
         let sine = match factors.factorise(system, &state.at) {
             Ok(()) => {
-                let mut response = Response::new(model, &state.at, &mut factors);
+                let mut response = Response::new(compiled, &state.at, &mut factors);
                 let speeds = self.0.iter().map(|passage| response.fastest(passage));
                 // Infinite speeds, or such that are not numbers, are those of a singular pose.
                 let fastest = speeds.fold(1.0, nan_or_larger);
@@ -90,7 +90,7 @@ impl Passages {
             }
             Err(_) => 0.0,
         };
-        state.keep_factors(model, factors);
+        state.keep_factors(compiled, factors);
         Some(if sine > 1.0 - RIGHT {
             FRAC_PI_2
         } else {
@@ -114,14 +114,14 @@ fn passage(system: &System, row: usize) -> Option<Passage> {
         Relation::Projection(p) => Some(Passage::Line(row, p.to)),
         Relation::Angle(_) => None,
         Relation::Other => {
-            let Element::Joint(joint) = equation.element else {
+            let Origin::Joint(joint) = equation.origin else {
                 return None;
             };
             let joint = &system.mechanism().joints[joint];
             // The last row of a cam holds the distance of the two parts.
-            let next = equations.get(row + 1).map(|next| next.element);
+            let next = equations.get(row + 1).map(|next| next.origin);
             let is_contact =
-                matches!(joint.kind, JointKind::Cam { .. }) && next != Some(equation.element);
+                matches!(joint.kind, JointKind::Cam { .. }) && next != Some(equation.origin);
             is_contact.then_some(Passage::Line(row, joint.to))
         }
     }
@@ -139,11 +139,15 @@ struct Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    fn new(model: &'a Model, at: &'a Configuration, factors: &'a mut JacobianFactors) -> Self {
-        let system = &model.system;
+    fn new(
+        compiled: &'a CompiledMechanism,
+        at: &'a Configuration,
+        factors: &'a mut JacobianFactors,
+    ) -> Self {
+        let system = &compiled.system;
         let (rows, unknowns) = (system.equations().len(), system.unknowns());
         let mut self_stresses: Vec<Vec<f64>> = Vec::new();
-        for &row in &model.redundant.now {
+        for &row in &compiled.redundant.now {
             let mut side = vec![0.0; unknowns];
             for (column, partial) in factors.gradient(row).entries() {
                 side[column] -= partial;

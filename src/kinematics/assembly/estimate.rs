@@ -3,7 +3,7 @@
 use super::turns::fix_turns;
 use crate::kinematics::error::Error;
 use crate::kinematics::path::Path;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
 
@@ -24,13 +24,13 @@ pub struct Move {
 /// [`Error::NotFinite`], [`Error::NotPositive`] and [`Error::NoMotion`] for values without a
 /// mechanism.
 pub(in crate::kinematics) fn go_to_estimate(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     path: &Path,
 ) -> Result<Vec<f64>, Error> {
-    state.release_crossings(model);
-    state.set_parameters(model, &path.to)?;
-    let system = &model.system;
+    state.release_crossings(compiled);
+    state.set_parameters(compiled, &path.to)?;
+    let system = &compiled.system;
     let drivers = path.drivers_at_end(system.mechanism());
     state.pose.time = path.time(1.0);
     system.check_drivers(&drivers)?;

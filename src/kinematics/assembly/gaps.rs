@@ -3,22 +3,22 @@
 use super::least_squares::LeastSquares;
 use crate::kinematics::constraint::Dimension;
 use crate::kinematics::error::OpenJoint;
-use crate::kinematics::origin::Element;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::origin::Origin;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 
 /// Returns the joints, constraints and drivers of these rows with a noticeable part of the largest
 /// scaled residual, at the present places of the bodies.
 pub(in crate::kinematics) fn open_joints(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
     rows: &[usize],
     largest: f64,
-) -> Vec<(Element, OpenJoint)> {
-    let system = &model.system;
+) -> Vec<(Origin, OpenJoint)> {
+    let system = &compiled.system;
     let least = 0.01 * largest;
     // With the size of each joint's part.
-    let mut open: Vec<(f64, Element, OpenJoint)> = Vec::new();
+    let mut open: Vec<(f64, Origin, OpenJoint)> = Vec::new();
     for &row in rows {
         let equation = &system.equations()[row];
         let target = system.target(row, &state.targets, &state.pose.drivers);
@@ -29,28 +29,28 @@ pub(in crate::kinematics) fn open_joints(
             Dimension::Angle => continue,
         };
         match open.last_mut() {
-            Some((_, element, joint)) if *element == equation.element => {
+            Some((_, origin, joint)) if *origin == equation.origin => {
                 joint.gap = joint.gap.hypot(gap);
                 joint.angle = joint.angle.max(angle);
             }
             _ => open.push((
                 equation.size(&state.at),
-                equation.element,
+                equation.origin,
                 OpenJoint {
-                    element: String::new(),
+                    origin: String::new(),
                     gap,
                     angle,
                 },
             )),
         }
     }
-    let noticeable = open.into_iter().filter_map(|(size, element, mut joint)| {
+    let noticeable = open.into_iter().filter_map(|(size, origin, mut joint)| {
         if joint.gap <= least * size {
             joint.gap = 0.0;
         }
         (joint.gap.max(joint.angle) > 0.0).then(|| {
-            joint.element = element.describe(system.mechanism());
-            (element, joint)
+            joint.origin = origin.describe(system.mechanism());
+            (origin, joint)
         })
     });
     noticeable.collect()
@@ -58,27 +58,27 @@ pub(in crate::kinematics) fn open_joints(
 
 /// Most minimisation steps towards the nearest pose of a mechanism that does not close.
 pub(in crate::kinematics) const STEPS_TO_NEAREST: usize = 200;
-/// Weight of all other rows when the gap is gathered in one element: they stay open by some 1e-8 of
+/// Weight of all other rows when the gap is gathered in one origin: they stay open by some 1e-8 of
 /// the gap, below the digits of a message.
 const HOLD_CLOSED: f64 = 1e4;
 
-/// Gathers the gap of some rows in one element: a minimum spreads it over all joints of a loop, but
+/// Gathers the gap of some rows in one origin: a minimum spreads it over all joints of a loop, but
 /// people look for one joint that does not meet. Returns the largest scaled residual.
 pub(in crate::kinematics) fn gather(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &mut State,
     problem: &mut LeastSquares,
-    element: Element,
+    origin: Origin,
 ) -> f64 {
-    let equations = model.system.equations();
+    let equations = compiled.system.equations();
     let weight = |row: usize| {
-        if equations[row].element == element {
+        if equations[row].origin == origin {
             1.0
         } else {
             HOLD_CLOSED
         }
     };
-    let mut state = state.block_state(&model.system);
+    let mut state = state.block_state(&compiled.system);
     problem
         .minimise(&mut state, None, weight, STEPS_TO_NEAREST)
         .largest

@@ -11,8 +11,8 @@ use super::part::{LARGEST_PART, STARTS};
 use super::search::{Nearest, NoBranch};
 use crate::kinematics::error::{Error, OpenJoint, Proof, Verdict};
 use crate::kinematics::newton::Limits;
-use crate::kinematics::origin::Element;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::origin::Origin;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 
 /// A nearest pose with a scaled residual up to this one is closed: no one could measure the gap,
@@ -28,30 +28,30 @@ pub(in crate::kinematics) const AN_EQUATION: &str = "an equation of the mechanis
 ///
 /// [`Error::NotAssembled`], or [`Error::Singular`] if it closes in a singular position.
 pub(in crate::kinematics) fn search_at_once(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     mut failure: NoBranch,
     estimate: &[f64],
 ) -> Result<u32, Error> {
-    let rows: Vec<_> = (0..model.system.equations().len()).collect();
+    let rows: Vec<_> = (0..compiled.system.equations().len()).collect();
     let nearest = failure.nearest.take();
-    if !is_small(&model.system) {
+    if !is_small(&compiled.system) {
         return match nearest {
-            Some(nearest) => Err(explain_gap(model, state, &failure, &nearest, estimate)),
-            None => search_sparsely(model, state, failure, &rows, estimate),
+            Some(nearest) => Err(explain_gap(compiled, state, &failure, &nearest, estimate)),
+            None => search_sparsely(compiled, state, failure, &rows, estimate),
         };
     }
-    let mut whole = LeastSquares::of_all(&model.system, &rows);
+    let mut whole = LeastSquares::of_all(&compiled.system, &rows);
     if !failure.proved || nearest.is_none() {
-        let closed = minimise_from_all(model, state, &mut whole, failure.proved, estimate);
+        let closed = minimise_from_all(compiled, state, &mut whole, failure.proved, estimate);
         if let Some(iterations) = closed {
             return Ok(iterations);
         }
         failure.starts += STARTS;
     }
     Err(match nearest {
-        Some(nearest) => explain_gap(model, state, &failure, &nearest, estimate),
-        None => explain_failure(model, state, &failure, &mut whole),
+        Some(nearest) => explain_gap(compiled, state, &failure, &nearest, estimate),
+        None => explain_failure(compiled, state, &failure, &mut whole),
     })
 }
 
@@ -61,29 +61,29 @@ pub(in crate::kinematics) fn search_at_once(
 ///
 /// Those of [`search_at_once`].
 fn search_sparsely(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     mut failure: NoBranch,
     rows: &[usize],
     estimate: &[f64],
 ) -> Result<u32, Error> {
-    let gap = close_on(&model.system, state, rows, estimate);
+    let gap = close_on(&compiled.system, state, rows, estimate);
     failure.starts += 1;
     state.accept_bodies();
     if gap.is_none()
-        && let Some(iterations) = close(model, state)
+        && let Some(iterations) = close(compiled, state)
     {
         return Ok(iterations);
     }
-    state.move_to_pose(&model.system);
-    Err(explain_pose(model, state, &failure, failure.block))
+    state.move_to_pose(&compiled.system);
+    Err(explain_pose(compiled, state, &failure, failure.block))
 }
 
 /// Minimises the whole from all starts and goes to the nearest pose. Unless that is `proved`
 /// impossible, closes the mechanism from one of them; then returns the most corrections of a
 /// block.
 fn minimise_from_all(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     whole: &mut LeastSquares,
     proved: bool,
@@ -91,17 +91,17 @@ fn minimise_from_all(
 ) -> Option<u32> {
     let mut nearest: Option<(f64, Vec<f64>)> = None;
     for attempt in 0..STARTS {
-        let mut block_state = state.block_state(&model.system);
+        let mut block_state = state.block_state(&compiled.system);
         whole.start(&mut block_state, estimate, attempt);
         whole.minimise_growing(&mut block_state);
         if !proved {
             state.accept_bodies();
-            if let Some(iterations) = close(model, state) {
+            if let Some(iterations) = close(compiled, state) {
                 return Some(iterations);
             }
-            state.move_to_pose(&model.system);
+            state.move_to_pose(&compiled.system);
         }
-        let mut block_state = state.block_state(&model.system);
+        let mut block_state = state.block_state(&compiled.system);
         let found = whole.minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
         let gap = found.cost;
         if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
@@ -112,14 +112,14 @@ fn minimise_from_all(
     if let Some((_, q)) = nearest {
         state.pose.q.copy_from_slice(&q);
     }
-    state.move_to_pose(&model.system);
+    state.move_to_pose(&compiled.system);
     None
 }
 
 /// Closes block by block by Newton–Raphson, from where the bodies are. Returns the most
 /// corrections of a block; `None` leaves the pose as it was.
-fn close(model: &mut Model, state: &mut State) -> Option<u32> {
-    let Model { system, plan, .. } = model;
+fn close(compiled: &mut CompiledMechanism, state: &mut State) -> Option<u32> {
+    let CompiledMechanism { system, plan, .. } = compiled;
     let closed = plan.close(&mut state.block_state(system), Limits::ASSEMBLY);
     let iterations = closed.ok()?;
     state.accept_bodies();
@@ -129,16 +129,16 @@ fn close(model: &mut Model, state: &mut State) -> Option<u32> {
 /// Explains a block in closed form that leaves the least gap, once the blocks behind it are as
 /// near to closing as they come.
 fn explain_gap(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     failure: &NoBranch,
     nearest: &Nearest,
     estimate: &[f64],
 ) -> Error {
     state.pose.q.copy_from_slice(&nearest.q);
-    state.move_to_pose(&model.system);
-    let proof = proof(model, state, failure, nearest.block);
-    let Model { system, plan, .. } = &mut *model;
+    state.move_to_pose(&compiled.system);
+    let proof = proof(compiled, state, failure, nearest.block);
+    let CompiledMechanism { system, plan, .. } = &mut *compiled;
     let mut block_state = state.block_state(system);
     for (index, block) in plan.blocks.iter_mut().enumerate().skip(nearest.block) {
         let block = &mut **block;
@@ -159,19 +159,29 @@ fn explain_gap(
         }
     }
     state.accept_bodies();
-    state.move_to_pose(&model.system);
-    judge(model, state, failure, proof)
+    state.move_to_pose(&compiled.system);
+    judge(compiled, state, failure, proof)
 }
 
 /// Explains the pose, which is the nearest one found, by a block that does not close.
-fn explain_pose(model: &mut Model, state: &mut State, failure: &NoBranch, block: usize) -> Error {
-    let proof = proof(model, state, failure, block);
-    judge(model, state, failure, proof)
+fn explain_pose(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+    failure: &NoBranch,
+    block: usize,
+) -> Error {
+    let proof = proof(compiled, state, failure, block);
+    judge(compiled, state, failure, proof)
 }
 
 /// Judges the pose, which is the nearest one found.
-fn judge(model: &mut Model, state: &mut State, failure: &NoBranch, proof: Proof) -> Error {
-    let largest = state.residual(&model.system);
+fn judge(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+    failure: &NoBranch,
+    proof: Proof,
+) -> Error {
+    let largest = state.residual(&compiled.system);
     if !largest.is_finite() {
         return Error::NotFinite {
             what: AN_EQUATION.to_owned(),
@@ -179,20 +189,25 @@ fn judge(model: &mut Model, state: &mut State, failure: &NoBranch, proof: Proof)
     }
     if !failure.proved && largest <= CLOSED {
         return Error::Singular {
-            rcond: state.rcond(model),
+            rcond: state.rcond(compiled),
             bodies: Vec::new(),
         };
     }
-    let rows: Vec<_> = (0..model.system.equations().len()).collect();
-    let open = open_joints(model, state, &rows, largest);
+    let rows: Vec<_> = (0..compiled.system.equations().len()).collect();
+    let open = open_joints(compiled, state, &rows, largest);
     not_assembled(state, failure, proof, open)
 }
 
 /// Returns the proof that a block does not close, where those before it are at the pose.
-fn proof(model: &Model, state: &mut State, failure: &NoBranch, block: usize) -> Proof {
-    let mechanism = model.system.mechanism();
-    let block = &model.plan.blocks[block];
-    let closed_form = block.proof(&state.block_state(&model.system));
+fn proof(
+    compiled: &CompiledMechanism,
+    state: &mut State,
+    failure: &NoBranch,
+    block: usize,
+) -> Proof {
+    let mechanism = compiled.system.mechanism();
+    let block = &compiled.plan.blocks[block];
+    let closed_form = block.proof(&state.block_state(&compiled.system));
     closed_form.unwrap_or_else(|| {
         let columns = block.columns().iter();
         let bodies: BTreeSet<_> = columns.map(|k| k / 3).collect();
@@ -209,7 +224,7 @@ fn not_assembled(
     state: &State,
     failure: &NoBranch,
     proof: Proof,
-    open: Vec<(Element, OpenJoint)>,
+    open: Vec<(Origin, OpenJoint)>,
 ) -> Error {
     let verdict = if failure.proved {
         Verdict::Impossible {
@@ -230,7 +245,7 @@ fn not_assembled(
 
 /// Explains a mechanism whose nearest pose, which is that of the state, leaves gaps.
 fn explain_failure(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     failure: &NoBranch,
     problem: &mut LeastSquares,
@@ -238,44 +253,44 @@ fn explain_failure(
     let beyond_numbers = || Error::NotFinite {
         what: AN_EQUATION.to_owned(),
     };
-    let largest = state.residual(&model.system);
+    let largest = state.residual(&compiled.system);
     if !largest.is_finite() {
         return beyond_numbers();
     }
     if !failure.proved && largest <= CLOSED {
         return Error::Singular {
-            rcond: state.dense_rcond(&model.system, &problem.rows, &problem.columns),
+            rcond: state.dense_rcond(&compiled.system, &problem.rows, &problem.columns),
             bodies: Vec::new(),
         };
     }
-    let spread = open_joints(model, state, &problem.rows, largest);
+    let spread = open_joints(compiled, state, &problem.rows, largest);
     if spread.is_empty() {
         return beyond_numbers();
     }
-    let proof = proof(model, state, failure, failure.block);
-    let Some((joint, q)) = gather_in_one(model, state, problem, &spread) else {
+    let proof = proof(compiled, state, failure, failure.block);
+    let Some((joint, q)) = gather_in_one(compiled, state, problem, &spread) else {
         return not_assembled(state, failure, proof, spread);
     };
     state.pose.q.copy_from_slice(&q);
-    state.move_to_pose(&model.system);
+    state.move_to_pose(&compiled.system);
     not_assembled(state, failure, proof, vec![joint])
 }
 
 /// Gathers the gap in one joint: the one with the smallest gap, on a tie the one declared last.
 /// Returns that joint, and q with the others closed.
 fn gather_in_one(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &mut State,
     problem: &mut LeastSquares,
-    spread: &[(Element, OpenJoint)],
-) -> Option<((Element, OpenJoint), Vec<f64>)> {
-    let mut best: Option<(f64, (Element, OpenJoint), Vec<f64>)> = None;
-    for (element, _) in spread {
-        let first = &model.system.equations()[model.system.rows_of(&[*element])[0]];
-        state.move_to_pose(&model.system);
-        let largest = gather(model, state, problem, *element);
-        if let [joint] = &open_joints(model, state, &problem.rows, largest)[..]
-            && joint.0 == *element
+    spread: &[(Origin, OpenJoint)],
+) -> Option<((Origin, OpenJoint), Vec<f64>)> {
+    let mut best: Option<(f64, (Origin, OpenJoint), Vec<f64>)> = None;
+    for (origin, _) in spread {
+        let first = &compiled.system.equations()[compiled.system.rows_of(&[*origin])[0]];
+        state.move_to_pose(&compiled.system);
+        let largest = gather(compiled, state, problem, *origin);
+        if let [joint] = &open_joints(compiled, state, &problem.rows, largest)[..]
+            && joint.0 == *origin
             && let gap = (joint.1.gap / first.size(&state.at)).max(joint.1.angle)
             && best
                 .as_ref()
@@ -286,6 +301,6 @@ fn gather_in_one(
             best = Some((gap, joint.clone(), q));
         }
     }
-    state.move_to_pose(&model.system);
+    state.move_to_pose(&compiled.system);
     best.map(|(_, joint, q)| (joint, q))
 }

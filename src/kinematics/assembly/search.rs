@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::branches::{Branches, SearchEffort};
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockSolver, BlockState};
 use crate::kinematics::state::State;
 
@@ -90,15 +90,15 @@ pub(in crate::kinematics) struct BranchSearch<'a> {
 ///
 /// [`NoBranch`] if no branches fit together.
 pub(in crate::kinematics) fn search(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     estimate: &[f64],
 ) -> Result<u32, NoBranch> {
-    let mut search = BranchSearch::new(model, state, estimate, SearchEffort::Near, MOST_WORK);
+    let mut search = BranchSearch::new(compiled, state, estimate, SearchEffort::Near, MOST_WORK);
     let mut found = search.next();
     if !found && search.leaves_out {
-        state.at.set_pose(model.system.mechanism(), estimate);
-        search = BranchSearch::new(model, state, estimate, SearchEffort::AnyTurn, MOST_WORK);
+        state.at.set_pose(compiled.system.mechanism(), estimate);
+        search = BranchSearch::new(compiled, state, estimate, SearchEffort::AnyTurn, MOST_WORK);
         found = search.next();
     }
     if !found {
@@ -112,13 +112,13 @@ pub(in crate::kinematics) fn search(
 impl<'a> BranchSearch<'a> {
     /// Begins a search. `most_work` limits the work after the first block that does not close.
     pub(in crate::kinematics) fn new(
-        model: &'a mut Model,
+        compiled: &'a mut CompiledMechanism,
         state: &'a mut State,
         estimate: &'a [f64],
         effort: SearchEffort,
         most_work: f64,
     ) -> Self {
-        let Model { system, plan, .. } = model;
+        let CompiledMechanism { system, plan, .. } = compiled;
         Self {
             levels: Vec::with_capacity(plan.blocks.len()),
             blocks: &mut plan.blocks,

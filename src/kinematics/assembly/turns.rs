@@ -119,13 +119,15 @@ mod tests {
     #[test]
     fn bodies_that_a_row_ties_turn_together() {
         let mut solver = assembled(&Source::new("track.toml", TRACK)).0;
-        let Solver { model, state, .. } = &mut solver;
+        let Solver {
+            compiled, state, ..
+        } = &mut solver;
         let estimate = state.pose.q.clone();
         for (body, turns) in [(0, 1000.0), (1, 1000.0), (2, 2.0), (3, 3.0)] {
             state.pose.q[3 * body + 2] += turns * TAU;
         }
-        state.move_to_pose(&model.system);
-        choose_turns(&model.system, state, &estimate);
+        state.move_to_pose(&compiled.system);
+        choose_turns(&compiled.system, state, &estimate);
         for (body, turns) in [(0, 0.0), (1, 0.0), (2, 2.0), (3, 3.0)] {
             let phi = 3 * body + 2;
             let off = state.pose.q[phi] - estimate[phi] - turns * TAU;

@@ -54,7 +54,7 @@ struct Filled {
 
 /// Returns the pivot of a body in the pose `q`.
 fn pivot(solver: &Solver, body: usize, q: &[f64]) -> Vector2<f64> {
-    let s = solver.model.plan.pivots.or_origin(body);
+    let s = solver.compiled.plan.pivots.or_origin(body);
     Vector2::new(q[3 * body], q[3 * body + 1]) + Rotation2::new(q[3 * body + 2]) * s
 }
 
@@ -71,7 +71,7 @@ fn check_inside(
     let bodies = mechanism.bodies.len();
     let end = &solver.pose().q;
     let bounds = &solver.tracker.bounds;
-    let deviation = |column| bounds.deviation(column, &solver.model.plan.pivots);
+    let deviation = |column| bounds.deviation(column, &solver.compiled.plan.pivots);
     let mut filled = Filled::default();
     other.restore(home);
     for look in 1..SAMPLES {
@@ -448,7 +448,7 @@ fn bounds_of_numbers_do_not_depend_on_what_moved_before() {
         let markers: Vec<_> = markers
             .map(|marker| [bounds.position(marker), bounds.angle(marker)])
             .collect();
-        let rows = 0..solver.model.system.equations().len();
+        let rows = 0..solver.compiled.system.equations().len();
         let targets: Vec<_> = rows.map(|row| bounds.target(row)).collect();
         format!("{end:?} {:?} {markers:?} {targets:?}", solver.pose())
     };

@@ -16,7 +16,7 @@ use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::OpenJoint;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::path::{Path, PathDrivers};
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockState, Crossing, Extrapolation};
 use crate::kinematics::redundancy;
 use crate::kinematics::singular::{
@@ -75,13 +75,13 @@ impl PathTracker {
     /// last one reached. With `gives_up` the reason is [`Reason::Lost`] or one that needs no search.
     pub(in crate::kinematics) fn track(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         path: &Path,
         gives_up: bool,
     ) -> Result<Progress, Blocked> {
         let mut run = Run {
-            model,
+            compiled,
             state,
             drivers: &mut self.drivers,
             bounds: &mut self.bounds,
@@ -113,7 +113,7 @@ impl PathTracker {
 
 /// A mechanism on a path.
 struct Run<'a> {
-    model: &'a mut Model,
+    compiled: &'a mut CompiledMechanism,
     state: &'a mut State,
     drivers: &'a mut PathDrivers,
     bounds: &'a mut StepBounds,
@@ -188,10 +188,12 @@ impl Run<'_> {
         self.drivers.parameters_move = self.path.moves_parameters();
         if self.drivers.parameters_move && !self.state.pose.crossings.is_empty() {
             // A crossing holds for the parameters of the pose only.
-            self.state.release_crossings(self.model);
-            self.state.move_to_pose(&self.model.system);
+            self.state.release_crossings(self.compiled);
+            self.state.move_to_pose(&self.compiled.system);
         }
-        self.state.refresh(self.model).map_err(|_| Reason::Lost)?;
+        self.state
+            .refresh(self.compiled)
+            .map_err(|_| Reason::Lost)?;
         self.state.pose.time = self.path.time(0.0);
         self.evaluate_drivers(0.0);
         self.drivers.arrive();
@@ -227,7 +229,7 @@ impl Run<'_> {
             return;
         }
         self.searched = regularity;
-        if redundancy::change_rows(self.model, self.state) {
+        if redundancy::change_rows(self.compiled, self.state) {
             self.searched = 0.0;
             self.return_to_pose();
         }
@@ -237,7 +239,7 @@ impl Run<'_> {
     #[cold]
     fn limit_near(&mut self) -> Result<Option<DriverLimit>, Reason> {
         let limit = singular::look_ahead(
-            self.model,
+            self.compiled,
             self.state,
             &self.drivers.here,
             (self.path, self.s),
@@ -253,7 +255,7 @@ impl Run<'_> {
     /// The cause of a stop, if a sub-step of the length `smallest` was tried already.
     fn prepare(&mut self, smallest: f64) -> Result<(), Reason> {
         if !self.state.pose.crossings.is_empty() {
-            singular::leave_crossings(self.model, self.state, &self.drivers.here);
+            singular::leave_crossings(self.compiled, self.state, &self.drivers.here);
         }
         self.solve_tangent();
         self.judge_pace()?;
@@ -276,7 +278,7 @@ impl Run<'_> {
     /// The cause of a stop if they are too many, or would be at the pace of the last ones.
     fn judge_pace(&mut self) -> Result<(), Reason> {
         let most = || {
-            let Model { system, plan, .. } = &*self.model;
+            let CompiledMechanism { system, plan, .. } = &*self.compiled;
             let moved = || [system.equations().len(), self.state.at.profiles().len()];
             most_substeps(plan.work(), self.drivers.parameters_move.then(moved))
         };
@@ -301,7 +303,7 @@ impl Run<'_> {
         if self.gives_up || self.drivers.parameters_move {
             return Err(Reason::NearSingular);
         }
-        let end = singular::find_end(self.model, self.state, self.path, self.s);
+        let end = singular::find_end(self.compiled, self.state, self.path, self.s);
         let loses_ranks = |end: &SingularPoint| end.kind == SingularKind::HigherRank;
         if end.as_deref().is_some_and(loses_ranks) {
             // The motion is there already, and its end has no place of its own.
@@ -363,7 +365,7 @@ impl Run<'_> {
     fn try_step_with(&mut self, end: f64, may_reuse: bool) -> Result<Correction, Failure> {
         self.set_values(end).map_err(Failure::Value)?;
         let part = [self.s, end];
-        let Model { system, plan, .. } = &mut *self.model;
+        let CompiledMechanism { system, plan, .. } = &mut *self.compiled;
         let state = &mut *self.state;
         self.bounds.begin(may_reuse);
         bound_drivers(system, state, self.drivers, self.path, part, self.bounds)
@@ -386,7 +388,7 @@ impl Run<'_> {
                 unit_rates,
             )
             .map_err(|Rejected| Failure::NotCertified)?;
-        if !self.model.redundant.is_empty() {
+        if !self.compiled.redundant.is_empty() {
             self.watch_rows()?;
         }
         Ok(correction)
@@ -396,10 +398,10 @@ impl Run<'_> {
     // Inlined, its loop invariants would be computed in steps without such rows.
     #[inline(never)]
     fn watch_rows(&mut self) -> Result<(), Failure> {
-        if let Some(joint) = redundancy::opened(self.model, self.state) {
+        if let Some(joint) = redundancy::opened(self.compiled, self.state) {
             return Err(Failure::Contradiction(joint));
         }
-        redundancy::watch_between(self.model, self.state, self.bounds)
+        redundancy::watch_between(self.compiled, self.state, self.bounds)
             .map_err(|Rejected| Failure::NotCertified)
     }
 
@@ -424,9 +426,9 @@ impl Run<'_> {
 
     /// Derives bodies, parameters and tangent from the pose again.
     fn return_to_pose(&mut self) {
-        self.state.return_to_pose(self.model);
+        self.state.return_to_pose(self.compiled);
         self.state
-            .refresh(self.model)
+            .refresh(self.compiled)
             .expect("the pose was regular when it was reached");
         self.solve_tangent();
     }
@@ -434,14 +436,14 @@ impl Run<'_> {
     /// Solves the tangent of the path at the pose; with a single driver it is known already.
     fn solve_tangent(&mut self) {
         if !self.state.has_single_driver() {
-            let Model { system, plan, .. } = &mut *self.model;
+            let CompiledMechanism { system, plan, .. } = &mut *self.compiled;
             plan.solve_rates(&mut self.state.block_state(system), &self.drivers.here);
         }
     }
 
     /// Evaluates the drivers at s.
     fn evaluate_drivers(&mut self, s: f64) {
-        let mechanism = self.model.system.mechanism();
+        let mechanism = self.compiled.system.mechanism();
         self.drivers
             .evaluate(mechanism, self.path, s, &self.state.motions);
     }
@@ -456,9 +458,9 @@ impl Run<'_> {
         self.drivers.take_values();
         if self.drivers.parameters_move {
             self.state
-                .try_parameters(self.model, &self.drivers.parameters)?;
+                .try_parameters(self.compiled, &self.drivers.parameters)?;
         }
-        self.model.system.check_drivers(&self.drivers.values)
+        self.compiled.system.check_drivers(&self.drivers.values)
     }
 
     /// Notes the change points between the start of the sub-step and the pose.
@@ -484,7 +486,7 @@ impl Run<'_> {
         if let Failure::Contradiction(joint) = &failure {
             self.opened.get_or_insert_with(|| (end, joint.clone()));
         }
-        if redundancy::change_rows(self.model, self.state) {
+        if redundancy::change_rows(self.compiled, self.state) {
             // Blocks are others now.
             self.fruitless.clear();
             self.return_to_pose();
@@ -504,7 +506,7 @@ impl Run<'_> {
         match (failure, self.opened.take()) {
             // Next to a singular position no row holds to rounding.
             (Failure::Contradiction(_), Some((_, joint)))
-                if !redundancy::is_nearly_singular(self.model, self.state) =>
+                if !redundancy::is_nearly_singular(self.compiled, self.state) =>
             {
                 Err(Reason::Contradiction(joint))
             }
@@ -523,7 +525,7 @@ impl Run<'_> {
             return Reason::Lost;
         }
         if !self.drivers.parameters_move
-            && let Some(end) = singular::find_end(self.model, self.state, self.path, self.s)
+            && let Some(end) = singular::find_end(self.compiled, self.state, self.path, self.s)
         {
             return Reason::Singular(end);
         }

@@ -8,9 +8,9 @@ use std::collections::BTreeSet;
 
 use crate::kinematics::continuation::PathTracker;
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::origin::Element;
+use crate::kinematics::origin::Origin;
 use crate::kinematics::path::{Curve, Path};
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::redundancy::{DEPENDENT, drivers_first, jacobian_rows};
 use crate::kinematics::state::State;
 use crate::mechanism::DriverId;
@@ -24,47 +24,47 @@ const TAKES_PART: f64 = 1e-6;
 /// Returns the joints and constraints whose reactions are indeterminate, at poses near the present
 /// one, which is restored.
 pub(in crate::kinematics) fn indeterminate(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     tracker: &mut PathTracker,
-) -> Vec<Element> {
-    if model.redundant.is_empty() {
+) -> Vec<Origin> {
+    if compiled.redundant.is_empty() {
         return Vec::new();
     }
     let home = state.pose.clone();
-    let mut stressed = vec![self_stressed(model, state)];
+    let mut stressed = vec![self_stressed(compiled, state)];
     for away in AWAY {
-        let mechanism = model.system.mechanism();
+        let mechanism = compiled.system.mechanism();
         let mut path = Path::new(mechanism);
         home.set_path(&mut path);
         let curves = path.curves.iter_mut().enumerate();
         for ((index, curve), &now) in curves.zip(&home.drivers) {
-            let row = model.system.driver_row(DriverId(index));
+            let row = compiled.system.driver_row(DriverId(index));
             *curve = Curve::held(now + away / row.row_scale(&state.at), now);
         }
-        if tracker.track(model, state, &path, false).is_ok() {
-            stressed.push(self_stressed(model, state));
+        if tracker.track(compiled, state, &path, false).is_ok() {
+            stressed.push(self_stressed(compiled, state));
         }
-        state.restore(model, &home);
+        state.restore(compiled, &home);
     }
     // At a singular position there are more self-stresses than elsewhere.
     let fewest = stressed.iter().map(|(count, _)| *count).min();
     let generic = stressed
         .into_iter()
         .filter(|(count, _)| Some(*count) == fewest);
-    let elements: BTreeSet<Element> = generic.flat_map(|(_, elements)| elements).collect();
-    elements.into_iter().collect()
+    let origins: BTreeSet<Origin> = generic.flat_map(|(_, origins)| origins).collect();
+    origins.into_iter().collect()
 }
 
-/// Returns the number of self-stresses at the present places of the bodies, and the elements with
+/// Returns the number of self-stresses at the present places of the bodies, and the origins with
 /// a part in one.
-fn self_stressed(model: &Model, state: &State) -> (usize, BTreeSet<Element>) {
-    let rows = jacobian_rows(model, state);
-    let mut echelon = Echelon::new(model.system.unknowns(), &rows);
+fn self_stressed(compiled: &CompiledMechanism, state: &State) -> (usize, BTreeSet<Origin>) {
+    let rows = jacobian_rows(compiled, state);
+    let mut echelon = Echelon::new(compiled.system.unknowns(), &rows);
     let mut count = 0;
-    let mut elements = BTreeSet::new();
-    let equations = model.system.equations();
-    for row in drivers_first(&model.system) {
+    let mut origins = BTreeSet::new();
+    let equations = compiled.system.equations();
+    for row in drivers_first(&compiled.system) {
         let Some(dependent) = echelon.offer(row, &rows[row], DEPENDENT) else {
             continue;
         };
@@ -72,9 +72,9 @@ fn self_stressed(model: &Model, state: &State) -> (usize, BTreeSet<Element>) {
         // The row itself has the part one.
         let combination = echelon.combination(&dependent, TAKES_PART);
         let others = combination.iter().map(|(row, _)| *row);
-        let is_held = |element: &Element| !matches!(element, Element::Driver(_));
-        let stressed = others.chain([row]).map(|row| equations[row].element);
-        elements.extend(stressed.filter(is_held));
+        let is_held = |origin: &Origin| !matches!(origin, Origin::Driver(_));
+        let stressed = others.chain([row]).map(|row| equations[row].origin);
+        origins.extend(stressed.filter(is_held));
     }
-    (count, elements)
+    (count, origins)
 }

@@ -16,7 +16,7 @@ use crate::kinematics::constraint::moving_configuration::{Varied, VariedConfigur
 use crate::kinematics::constraint::{Constraint, Gradient, partial};
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::newton::Rejected;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::{Kind, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
@@ -139,33 +139,33 @@ impl Forces {
     /// where reactions of least norm do not exist.
     pub(in crate::kinematics) fn sensitivity(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         motion: KnownMotion<'_>,
         direction: &Direction,
         inputs: &[f64],
     ) -> Result<ForceSensitivity, Error> {
-        let Some(point) = near_point(model, state) else {
-            return self.solved_sensitivity(model, state, motion, direction, inputs);
+        let Some(point) = near_point(compiled, state) else {
+            return self.solved_sensitivity(compiled, state, motion, direction, inputs);
         };
         let efforts = ForceParts {
             efforts: true,
             reactions: false,
         };
-        self.solve(model, state, motion, efforts)?;
+        self.solve(compiled, state, motion, efforts)?;
         let places = Places::new(&self.mechanism);
         let mut loads = Loads::new(motion.inputs, &self.results.demand);
         // Numbers that are zero are rounding of the loads: with one more number, a part of these as far
         // as the bodies turn, they do not compare with rounding.
         const ROUNDING: f64 = 1e-3;
         let found = point.interpolate(
-            model,
+            compiled,
             state,
             motion.driver_rates,
             |index| places.kind(index),
-            |model, state, place, values| {
+            |compiled, state, place, values| {
                 let motion = loads.motion(place);
-                let along = self.solved_sensitivity(model, state, motion, direction, inputs)?;
+                let along = self.solved_sensitivity(compiled, state, motion, direction, inputs)?;
                 values.extend(along.values);
                 values.push(ROUNDING * loads.natural() * along.change);
                 Ok(())
@@ -174,12 +174,12 @@ impl Forces {
         let mut solved = ForceSensitivity {
             values: vec![f64::NAN; places.energies + 2],
             places,
-            fault: point.no_limit(model, NoLimit::Derivatives),
+            fault: point.no_limit(compiled, NoLimit::Derivatives),
             change: 0.0,
         };
         let is_complete = |found: &Vec<f64>| !found.iter().any(|value| value.is_nan());
         if !point.is_at && !found.as_ref().is_some_and(is_complete) {
-            solved = self.solved_sensitivity(model, state, motion, direction, inputs)?;
+            solved = self.solved_sensitivity(compiled, state, motion, direction, inputs)?;
         }
         for (value, found) in solved.values.iter_mut().zip(found.iter().flatten()) {
             if !found.is_nan() {
@@ -192,20 +192,20 @@ impl Forces {
     /// Returns the derivatives by the Jacobian at the pose.
     fn solved_sensitivity(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         motion: KnownMotion<'_>,
         direction: &Direction,
         inputs: &[f64],
     ) -> Result<ForceSensitivity, Error> {
-        self.solve_directly(model, state, motion, ForceParts::ALL)?;
-        let along = state.sensitivity(model, motion.rates, motion.driver_rates, direction)?;
+        self.solve_directly(compiled, state, motion, ForceParts::ALL)?;
+        let along = state.sensitivity(compiled, motion.rates, motion.driver_rates, direction)?;
         let along = Along {
             motion: &along,
             time: direction.time,
             inputs,
         };
-        self.sensitivity_along(model, state, motion, &along)
+        self.sensitivity_along(compiled, state, motion, &along)
     }
 
     /// Returns the derivatives of all forces along a direction; all are up to date.
@@ -215,12 +215,12 @@ impl Forces {
     /// [`Error::Singular`] where reactions of least norm do not exist.
     fn sensitivity_along(
         &mut self,
-        model: &Model,
+        compiled: &CompiledMechanism,
         state: &State,
         motion: KnownMotion<'_>,
         sensitivity: &Along<'_>,
     ) -> Result<ForceSensitivity, Error> {
-        let system = &model.system;
+        let system = &compiled.system;
         let mechanism = std::sync::Arc::clone(&self.mechanism);
         let at = sensitivity.motion.mechanism();
         let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);

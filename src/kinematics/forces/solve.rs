@@ -12,7 +12,7 @@ use super::wrench::{Contact, ReactionRows};
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockState, JacobianFactors};
 use crate::kinematics::singular::{Kind, NearPoint, Place, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
@@ -85,8 +85,8 @@ impl ForceParts {
 
 impl Forces {
     /// Makes the storage.
-    pub(in crate::kinematics) fn new(model: &Model) -> Self {
-        let system = &model.system;
+    pub(in crate::kinematics) fn new(compiled: &CompiledMechanism) -> Self {
+        let system = &compiled.system;
         let mechanism = Arc::clone(system.mechanism());
         let places = input_places(&mechanism);
         let inputs = mechanism.force_inputs().len();
@@ -100,8 +100,8 @@ impl Forces {
             }),
             applied: AppliedForces::new(&mechanism, &places),
             inputs,
-            factors: JacobianFactors::new(system, &model.structure, &model.plan),
-            set_aside: model.redundant.now.clone(),
+            factors: JacobianFactors::new(system, &compiled.structure, &compiled.plan),
+            set_aside: compiled.redundant.now.clone(),
             contacts: Contact::all(&mechanism, &rows),
             rows,
             self_stresses: SelfStresses::default(),
@@ -157,18 +157,18 @@ impl Forces {
     /// [`Error::ChangePoint`] where reactions have no limit at a change point.
     pub(in crate::kinematics) fn solve(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         motion: KnownMotion<'_>,
         parts: ForceParts,
     ) -> Result<(), Error> {
         if parts.reactions
             && !state.pose.crossings.is_empty()
-            && let Some(point) = near_point(model, state)
+            && let Some(point) = near_point(compiled, state)
         {
-            return self.solve_near(&point, model, state, motion);
+            return self.solve_near(&point, compiled, state, motion);
         }
-        self.solve_directly(model, state, motion, parts)
+        self.solve_directly(compiled, state, motion, parts)
     }
 
     /// Solves the forces with the Jacobian at the pose.
@@ -178,7 +178,7 @@ impl Forces {
     /// Those of [`solve`](Self::solve).
     pub(super) fn solve_directly(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         motion: KnownMotion<'_>,
         parts: ForceParts,
@@ -187,13 +187,13 @@ impl Forces {
         self.apply_forces(state, motion)?;
         // Reactions have the same bits with efforts and without.
         if parts.efforts || parts.reactions {
-            state.refresh(model)?;
-            self.solve_efforts(model, state, motion)?;
+            state.refresh(compiled)?;
+            self.solve_efforts(compiled, state, motion)?;
         } else {
             self.add_energies(state, motion);
         }
         if parts.reactions {
-            self.solve_reactions(model, state)?;
+            self.solve_reactions(compiled, state)?;
         }
         Ok(())
     }
@@ -207,7 +207,7 @@ impl Forces {
     fn solve_near(
         &mut self,
         point: &NearPoint,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         motion: KnownMotion<'_>,
     ) -> Result<(), Error> {
@@ -215,17 +215,17 @@ impl Forces {
             efforts: true,
             reactions: false,
         };
-        self.solve_directly(model, state, motion, efforts)?;
+        self.solve_directly(compiled, state, motion, efforts)?;
         let mut loads = Loads::new(motion.inputs, &self.results.demand);
         let found = point.interpolate(
-            model,
+            compiled,
             state,
             motion.driver_rates,
             |_| Kind { group: 0, level: 0 },
-            |model, state, place, values| {
+            |compiled, state, place, values| {
                 let motion = loads.motion(place);
-                self.solve_directly(model, state, motion, ForceParts::ALL)?;
-                let rows = model.system.equations().iter();
+                self.solve_directly(compiled, state, motion, ForceParts::ALL)?;
+                let rows = compiled.system.equations().iter();
                 let scaled = rows
                     .zip(&self.results.multipliers)
                     .map(|(row, multiplier)| multiplier / row.row_scale(&state.at));
@@ -233,25 +233,29 @@ impl Forces {
                 Ok(())
             },
         );
-        self.solve_directly(model, state, motion, efforts)?;
+        self.solve_directly(compiled, state, motion, efforts)?;
         let none = || {
             found
                 .as_ref()
                 .is_none_or(|all| all.iter().any(|value| value.is_nan()))
         };
         if point.is_at && none() {
-            return Err(point.no_limit(model, NoLimit::Reactions));
+            return Err(point.no_limit(compiled, NoLimit::Reactions));
         }
         if none() {
-            self.solve_multipliers(model, state)?;
+            self.solve_multipliers(compiled, state)?;
         }
-        let rows = model.system.equations().iter().zip(found.iter().flatten());
+        let rows = compiled
+            .system
+            .equations()
+            .iter()
+            .zip(found.iter().flatten());
         for (multiplier, (row, value)) in self.results.multipliers.iter_mut().zip(rows) {
             if !value.is_nan() {
                 *multiplier = value * row.row_scale(&state.at);
             }
         }
-        self.write_reactions(model, state)
+        self.write_reactions(compiled, state)
     }
 
     /// Evaluates the masses, if parameters have changed.
@@ -317,7 +321,7 @@ impl Forces {
     /// [`SINGULAR_HERE`] for values that are not finite.
     fn solve_efforts(
         &mut self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         motion: KnownMotion<'_>,
     ) -> Result<(), Error> {
@@ -353,12 +357,12 @@ impl Forces {
             masses.load(&state.at, velocity, accelerations, driven, demand, energies);
             [*driver] = forces;
         } else {
-            work.solve_units(model, state);
+            work.solve_units(compiled, state);
             for (driver, definition) in self.mechanism.drivers.iter().enumerate() {
                 (work.coasting[driver], work.free[driver]) =
                     coasting_and_free(definition, &motion.driver_rates[driver]);
             }
-            solve_rates(model, state, &work.coasting, &mut work.rates);
+            solve_rates(compiled, state, &work.coasting, &mut work.rates);
             let accelerations = by_body(work.rates.acceleration()).iter().copied();
             drivers.fill(DriverForces::default());
             let driven = DriverLoads {
@@ -381,18 +385,26 @@ impl Forces {
     }
 
     /// Solves Phi_qᵀ λ = w and the reactions. Uses up w.
-    fn solve_reactions(&mut self, model: &Model, state: &State) -> Result<(), Error> {
-        self.solve_multipliers(model, state)?;
-        self.write_reactions(model, state)
+    fn solve_reactions(
+        &mut self,
+        compiled: &CompiledMechanism,
+        state: &State,
+    ) -> Result<(), Error> {
+        self.solve_multipliers(compiled, state)?;
+        self.write_reactions(compiled, state)
     }
 
     /// Solves Phi_qᵀ λ = w. Uses up w.
-    fn solve_multipliers(&mut self, model: &Model, state: &State) -> Result<(), Error> {
-        let system = &model.system;
+    fn solve_multipliers(
+        &mut self,
+        compiled: &CompiledMechanism,
+        state: &State,
+    ) -> Result<(), Error> {
+        let system = &compiled.system;
         // Item by item: `memcmp` of two empty lists takes as long as a dyad.
-        if !self.set_aside.iter().eq(&model.redundant.now) {
-            self.factors = JacobianFactors::new(system, &model.structure, &model.plan);
-            self.set_aside.clone_from(&model.redundant.now);
+        if !self.set_aside.iter().eq(&compiled.redundant.now) {
+            self.factors = JacobianFactors::new(system, &compiled.structure, &compiled.plan);
+            self.set_aside.clone_from(&compiled.redundant.now);
             // The solution leaves λ of rows set aside as it is.
             self.results.multipliers.fill(0.0);
         }
@@ -417,14 +429,18 @@ impl Forces {
             );
         } else {
             self.factors
-                .solve_transposed_at(&model.plan, system, &state.at, demand, multipliers)
+                .solve_transposed_at(&compiled.plan, system, &state.at, demand, multipliers)
                 .map_err(|Rejected| SINGULAR_HERE)?;
         }
         Ok(())
     }
 
     /// Writes the reactions that λ makes.
-    fn write_reactions(&mut self, model: &Model, state: &State) -> Result<(), Error> {
+    fn write_reactions(
+        &mut self,
+        compiled: &CompiledMechanism,
+        state: &State,
+    ) -> Result<(), Error> {
         let Results {
             multipliers,
             reactions,
@@ -433,7 +449,7 @@ impl Forces {
         let mut held = self.rows.constraints.iter();
         let finite = self
             .rows
-            .write_reactions(&model.system, &state.at, multipliers, reactions)
+            .write_reactions(&compiled.system, &state.at, multipliers, reactions)
             && held.all(|&row| multipliers[row].is_finite());
         if finite { Ok(()) } else { Err(SINGULAR_HERE) }
     }
@@ -495,12 +511,12 @@ impl<'a> Loads<'a> {
 
 impl Work {
     /// Writes ∂q/∂u of each of several drivers.
-    fn solve_units(&mut self, model: &mut Model, state: &mut State) {
+    fn solve_units(&mut self, compiled: &mut CompiledMechanism, state: &mut State) {
         let count = self.unit_rates.len();
         for driver in 0..count {
             self.unit_rates.fill(Jet::constant(0.0));
             self.unit_rates[driver].derivatives[0] = 1.0;
-            solve_rates(model, state, &self.unit_rates, &mut self.rates);
+            solve_rates(compiled, state, &self.unit_rates, &mut self.rates);
             let own = self.units.iter_mut().skip(driver).step_by(count);
             for (own, solved) in own.zip(self.rates.velocity().chunks(3)) {
                 own[..solved.len()].copy_from_slice(solved);
@@ -522,13 +538,18 @@ fn coasting_and_free(driver: &Driver, rates: &Jet) -> (Jet, f64) {
 
 /// Solves the rates of q for these rates of the drivers, at the pose at which the plan is
 /// factorised.
-fn solve_rates(model: &mut Model, state: &mut State, driver_rates: &[Jet], rates: &mut Rates) {
+fn solve_rates(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+    driver_rates: &[Jet],
+    rates: &mut Rates,
+) {
     let mut block_state = BlockState {
-        system: &model.system,
+        system: &compiled.system,
         targets: &state.targets,
         drivers: &state.pose.drivers,
         at: &mut state.at,
         tangent: rates,
     };
-    model.plan.solve_rates(&mut block_state, driver_rates);
+    compiled.plan.solve_rates(&mut block_state, driver_rates);
 }

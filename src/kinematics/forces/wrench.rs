@@ -2,7 +2,7 @@
 
 use crate::kinematics::constraint::Gradient;
 use crate::kinematics::constraint::configuration::{Configuration, perp};
-use crate::kinematics::origin::Element;
+use crate::kinematics::origin::Origin;
 use crate::kinematics::system::System;
 use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number};
 
@@ -135,10 +135,10 @@ impl ReactionRows {
             drivers: vec![0; mechanism.drivers.len()],
         };
         for (row, equation) in system.equations().iter().enumerate() {
-            match equation.element {
-                Element::Joint(joint) => rows.joints[joint].push(row),
-                Element::Constraint(held) => rows.constraints[held] = row,
-                Element::Driver(driver) => rows.drivers[driver.index()] = row,
+            match equation.origin {
+                Origin::Joint(joint) => rows.joints[joint].push(row),
+                Origin::Constraint(held) => rows.constraints[held] = row,
+                Origin::Driver(driver) => rows.drivers[driver.index()] = row,
             }
         }
         for (joint, definition) in mechanism.joints.iter().enumerate() {

@@ -15,7 +15,7 @@ use certified_tube::CertifiedTubes;
 use contraction::ContractionTest;
 use equations::{BlockEquations, ColumnOwner, Jacobian};
 
-use super::carryover::{BlockCarryover, CheckedSegment};
+use super::choices::{BlockChoices, CheckedSegment};
 use super::elimination::EliminationOrder;
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
@@ -293,14 +293,14 @@ impl SolveBlock for CoupledBlock {
         }
     }
 
-    fn carry_over(&self, to: &mut BlockCarryover) {
+    fn copy_choices(&self, to: &mut BlockChoices) {
         self.jacobian.lu.copy_pivots(&mut to.pivots[0]);
         self.test.middle.lu.copy_pivots(&mut to.pivots[1]);
         to.segment.clone_from(&self.segment);
     }
 
-    fn take_over(&mut self, from: &BlockCarryover) -> bool {
-        let BlockCarryover { pivots, segment } = from;
+    fn take_choices(&mut self, from: &BlockChoices) -> bool {
+        let BlockChoices { pivots, segment } = from;
         let fits = segment.start.len() == self.segment.start.len()
             && segment.way.len() == self.segment.way.len()
             && segment.leading < segment.way.len();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::BlockSolver;
-use super::carryover::BlockCarryover;
+use super::choices::BlockChoices;
 use super::crossing::{Crossing, SEAM};
 use super::solve::SolveBlock;
 use super::step::{BlockState, Step};
@@ -192,12 +192,12 @@ impl SolveBlock for InterpolatedBlock {
         self.block.keeps_pivots()
     }
 
-    fn carry_over(&self, to: &mut BlockCarryover) {
-        self.block.carry_over(to);
+    fn copy_choices(&self, to: &mut BlockChoices) {
+        self.block.copy_choices(to);
     }
 
-    fn take_over(&mut self, from: &BlockCarryover) -> bool {
-        self.block.take_over(from)
+    fn take_choices(&mut self, from: &BlockChoices) -> bool {
+        self.block.take_choices(from)
     }
 
     fn forget_pivots(&mut self) {

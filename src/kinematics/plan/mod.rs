@@ -18,8 +18,9 @@
 
 mod anchor;
 mod anchor_path;
-mod carryover;
+mod choices;
 mod compile;
+pub(super) mod compiled_mechanism;
 mod coupled;
 mod crossing;
 mod elimination;
@@ -27,7 +28,6 @@ mod explicit;
 mod factors;
 mod interpolated;
 mod load;
-pub(super) mod model;
 mod pinned;
 mod reach;
 mod revolute;
@@ -47,7 +47,7 @@ use super::system::{System, Targets};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::mechanism::Jet;
 
-pub use carryover::{BlockCarryover, CheckedSegment};
+pub use choices::{BlockChoices, CheckedSegment};
 pub(super) use coupled::CoupledBlock;
 pub use crossing::{Crossing, Polynomial};
 pub(super) use crossing::{INNER, SEAM, divided_differences};
@@ -195,22 +195,22 @@ impl BlockPlan {
 
     /// Copies what blocks take over from earlier steps. Allocates the first time and when pivots
     /// were chosen.
-    pub(super) fn carry_over(&self, to: &mut Vec<BlockCarryover>) {
+    pub(super) fn copy_choices(&self, to: &mut Vec<BlockChoices>) {
         let blocks = || self.blocks.iter().filter(|block| block.keeps_pivots());
-        to.resize_with(blocks().count(), BlockCarryover::default);
+        to.resize_with(blocks().count(), BlockChoices::default);
         for (block, to) in blocks().zip(to) {
-            block.carry_over(to);
+            block.copy_choices(to);
         }
     }
 
     /// Lets blocks take over what those of another plan for the same rows have copied. Returns
     /// false if it is of another plan.
-    pub(super) fn take_over(&mut self, from: &[BlockCarryover]) -> bool {
+    pub(super) fn take_choices(&mut self, from: &[BlockChoices]) -> bool {
         let blocks = self.blocks.iter_mut();
         let mut blocks = blocks.filter(|block| block.keeps_pivots());
         let fits = from
             .iter()
-            .all(|from| blocks.next().is_some_and(|block| block.take_over(from)));
+            .all(|from| blocks.next().is_some_and(|block| block.take_choices(from)));
         fits && blocks.next().is_none()
     }
 
@@ -332,7 +332,7 @@ mod tests {
     /// Returns a letter per block, `C` with the number of its unknowns.
     fn blocks(name: &str) -> String {
         let (solver, _) = assembled(&shipped(name));
-        let letters = solver.model.plan.blocks.iter().map(|block| match block {
+        let letters = solver.compiled.plan.blocks.iter().map(|block| match block {
             BlockSolver::PinnedBody(_) => "P".to_owned(),
             BlockSolver::RrrDyad(_) => "D".to_owned(),
             BlockSolver::RrpDyad(_) => "S".to_owned(),

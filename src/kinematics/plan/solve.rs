@@ -1,6 +1,6 @@
 //! The interface of block solvers.
 
-use super::carryover::BlockCarryover;
+use super::choices::BlockChoices;
 use super::reach::ClosureGap;
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
@@ -163,13 +163,13 @@ pub(in crate::kinematics) trait SolveBlock:
     }
 
     /// Copies what it takes over from earlier steps, if it [keeps pivots](Self::keeps_pivots).
-    fn carry_over(&self, to: &mut BlockCarryover) {
+    fn copy_choices(&self, to: &mut BlockChoices) {
         let _ = to;
     }
 
     /// Takes over what another solver of this block has copied. Returns false if it is of another
     /// block.
-    fn take_over(&mut self, from: &BlockCarryover) -> bool {
+    fn take_choices(&mut self, from: &BlockChoices) -> bool {
         let _ = from;
         false
     }

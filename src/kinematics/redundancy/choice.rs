@@ -9,7 +9,7 @@ use super::rank::{
     DEPENDENT, drivers_first, find_freedom, jacobian_rows, singular_position, weakest,
 };
 use super::slip::explain_misfit;
-use crate::kinematics::Element;
+use crate::kinematics::Origin;
 use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::assembly::gaps::open_joints;
 use crate::kinematics::assembly::least_squares::holds;
@@ -17,7 +17,7 @@ use crate::kinematics::error::{Error, OpenJoint};
 use crate::kinematics::linear::{Echelon, Row};
 use crate::kinematics::newton::{Limits, SINGULAR};
 use crate::kinematics::path::Path;
-use crate::kinematics::plan::model::{Model, RedundantRows};
+use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, RedundantRows};
 use crate::kinematics::state::State;
 use crate::kinematics::system::structure::Structure;
 
@@ -37,7 +37,7 @@ const WORTH: f64 = 2.0;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Redundancy {
     /// Kind and name.
-    pub element: String,
+    pub origin: String,
     /// Number of its redundant equations.
     pub redundant: usize,
     /// Number of its equations.
@@ -47,7 +47,7 @@ pub struct Redundancy {
 impl fmt::Display for Redundancy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            element,
+            origin,
             redundant,
             equations,
         } = self;
@@ -58,7 +58,7 @@ impl fmt::Display for Redundancy {
         };
         write!(
             f,
-            "constraint equations of {element} are redundant: {redundant} of its {equations} \
+            "constraint equations of {origin} are redundant: {redundant} of its {equations} \
              {set_aside} set aside and watched"
         )
     }
@@ -80,24 +80,24 @@ struct Fitness {
 }
 
 /// Returns the joints and constraints with redundant equations.
-pub(in crate::kinematics) fn redundancies(model: &Model) -> Vec<Redundancy> {
-    let equations = model.system.equations();
-    let mut found: Vec<(Element, usize)> = Vec::new();
-    for &row in &model.redundant.all {
-        let element = equations[row].element;
+pub(in crate::kinematics) fn redundancies(compiled: &CompiledMechanism) -> Vec<Redundancy> {
+    let equations = compiled.system.equations();
+    let mut found: Vec<(Origin, usize)> = Vec::new();
+    for &row in &compiled.redundant.all {
+        let origin = equations[row].origin;
         match found.last_mut() {
-            Some((last, count)) if *last == element => *count += 1,
-            _ => found.push((element, 1)),
+            Some((last, count)) if *last == origin => *count += 1,
+            _ => found.push((origin, 1)),
         }
     }
-    let mut rows: BTreeMap<Element, usize> = BTreeMap::new();
+    let mut rows: BTreeMap<Origin, usize> = BTreeMap::new();
     for equation in equations {
-        *rows.entry(equation.element).or_default() += 1;
+        *rows.entry(equation.origin).or_default() += 1;
     }
-    let describe = |(element, redundant): (Element, usize)| Redundancy {
-        element: element.describe(model.system.mechanism()),
+    let describe = |(origin, redundant): (Origin, usize)| Redundancy {
+        origin: origin.describe(compiled.system.mechanism()),
         redundant,
-        equations: rows[&element],
+        equations: rows[&origin],
     };
     found.into_iter().map(describe).collect()
 }
@@ -110,54 +110,58 @@ pub(in crate::kinematics) fn redundancies(model: &Model) -> Vec<Redundancy> {
 /// [`Error::Contradiction`] and [`Error::NotAssembled`] if the mechanism does not close,
 /// [`Error::Singular`] if it closes in a singular position; those of values without a mechanism.
 pub(in crate::kinematics) fn choose_rows(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     path: &Path,
 ) -> Result<(), Error> {
-    let estimate = go_to_estimate(model, state, path)?;
+    let estimate = go_to_estimate(compiled, state, path)?;
     // Without a choice the rows chosen for other values stay.
-    let nothing = Structure::of_nothing(&model.system);
+    let nothing = Structure::of_nothing(&compiled.system);
     let before = (
-        model.redundant.clone(),
-        std::mem::replace(&mut model.structure, nothing),
-        std::mem::take(&mut model.plan),
+        compiled.redundant.clone(),
+        std::mem::replace(&mut compiled.structure, nothing),
+        std::mem::take(&mut compiled.plan),
     );
-    let chosen = choose_rows_near(model, state, &estimate);
+    let chosen = choose_rows_near(compiled, state, &estimate);
     if chosen.is_err() {
-        (model.redundant, model.structure, model.plan) = before;
+        (compiled.redundant, compiled.structure, compiled.plan) = before;
         state.invalidate();
     }
     chosen
 }
 
-fn choose_rows_near(model: &mut Model, state: &mut State, estimate: &[f64]) -> Result<(), Error> {
-    if let Some(gap) = close_on_all(model, state, estimate) {
-        return Err(explain_open(model, state, gap, estimate));
+fn choose_rows_near(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+    estimate: &[f64],
+) -> Result<(), Error> {
+    if let Some(gap) = close_on_all(compiled, state, estimate) {
+        return Err(explain_open(compiled, state, gap, estimate));
     }
-    let all = find_freedom(model, state).map_err(|error| {
+    let all = find_freedom(compiled, state).map_err(|error| {
         // Far from where the rows hold together no rank means anything.
-        explain_misfit(model, state).unwrap_or(error)
+        explain_misfit(compiled, state).unwrap_or(error)
     })?;
-    let choice = choose_among(model, &jacobian_rows(model, state), FIT);
-    let solved = model.system.equations().len() - choice.set_aside.len();
-    if solved < model.system.unknowns() {
-        return Err(singular_position(model, state));
+    let choice = choose_among(compiled, &jacobian_rows(compiled, state), FIT);
+    let solved = compiled.system.equations().len() - choice.set_aside.len();
+    if solved < compiled.system.unknowns() {
+        return Err(singular_position(compiled, state));
     }
-    let first = match std::mem::take(&mut model.redundant.first) {
+    let first = match std::mem::take(&mut compiled.redundant.first) {
         // The same rows whatever was chosen in between.
         first if first.len() == choice.set_aside.len() => first,
         _ => choice.set_aside.clone(),
     };
-    model.redundant = RedundantRows {
+    compiled.redundant = RedundantRows {
         all,
         first,
         now: choice.set_aside,
         contour_rows: Vec::new(),
     };
-    state.compile(model);
-    let Model { system, plan, .. } = &mut *model;
+    state.compile(compiled);
+    let CompiledMechanism { system, plan, .. } = &mut *compiled;
     if plan.factorise(&mut state.block_state(system)).is_err() || plan.rcond() < SINGULAR {
-        return Err(singular_position(model, state));
+        return Err(singular_position(compiled, state));
     }
     Ok(())
 }
@@ -169,25 +173,25 @@ fn choose_rows_near(model: &mut Model, state: &mut State, estimate: &[f64]) -> R
 ///
 /// Those of [`choose_rows`].
 pub(in crate::kinematics) fn assemble_on_all(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     estimate: &[f64],
 ) -> Result<u32, Error> {
-    if let Some(gap) = close_on_all(model, state, estimate) {
-        return Err(explain_open(model, state, gap, estimate));
+    if let Some(gap) = close_on_all(compiled, state, estimate) {
+        return Err(explain_open(compiled, state, gap, estimate));
     }
     state.accept_bodies();
-    return_to_fit_rows(model, state)?;
-    let Model { system, plan, .. } = &mut *model;
+    return_to_fit_rows(compiled, state)?;
+    let CompiledMechanism { system, plan, .. } = &mut *compiled;
     let closed = plan.close(&mut state.block_state(system), Limits::ASSEMBLY);
     let Ok(iterations) = closed else {
-        return Err(singular_position(model, state));
+        return Err(singular_position(compiled, state));
     };
-    if let Some(error) = explain_misfit(model, state) {
+    if let Some(error) = explain_misfit(compiled, state) {
         return Err(error);
     }
     state.accept_bodies();
-    state.move_to_pose(&model.system);
+    state.move_to_pose(&compiled.system);
     Ok(iterations)
 }
 
@@ -197,93 +201,102 @@ pub(in crate::kinematics) fn assemble_on_all(
 /// # Errors
 ///
 /// [`Error::Singular`] if the rows all together lose rank here.
-fn return_to_fit_rows(model: &mut Model, state: &mut State) -> Result<(), Error> {
-    if model.redundant.is_empty() || !state.pose.crossings.is_empty() {
+fn return_to_fit_rows(compiled: &mut CompiledMechanism, state: &mut State) -> Result<(), Error> {
+    if compiled.redundant.is_empty() || !state.pose.crossings.is_empty() {
         return Ok(());
     }
-    let first = model.redundant.first.clone();
-    let rows = jacobian_rows(model, state);
-    let set_aside = if fitness_without(model, &rows, &first).weakest > KEPT {
+    let first = compiled.redundant.first.clone();
+    let rows = jacobian_rows(compiled, state);
+    let set_aside = if fitness_without(compiled, &rows, &first).weakest > KEPT {
         first
     } else {
-        let choice = choose_among(model, &rows, FITTER);
+        let choice = choose_among(compiled, &rows, FITTER);
         if choice.set_aside.len() > first.len() {
-            return Err(singular_position(model, state));
+            return Err(singular_position(compiled, state));
         }
         choice.set_aside
     };
-    if set_aside != model.redundant.now {
-        model.redundant.now = set_aside;
-        state.compile(model);
+    if set_aside != compiled.redundant.now {
+        compiled.redundant.now = set_aside;
+        state.compile(compiled);
     }
-    state.move_to_pose(&model.system);
+    state.move_to_pose(&compiled.system);
     Ok(())
 }
 
 /// Takes other rows if those in use are much nearer to dependence here. Returns whether it did.
 /// Allocates, but only where redundant rows leave a choice.
-pub(in crate::kinematics) fn change_rows(model: &mut Model, state: &mut State) -> bool {
-    let Some(choice) = fitter_rows(model, state) else {
+pub(in crate::kinematics) fn change_rows(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+) -> bool {
+    let Some(choice) = fitter_rows(compiled, state) else {
         return false;
     };
-    model.redundant.now = choice.set_aside;
-    state.compile(model);
+    compiled.redundant.now = choice.set_aside;
+    state.compile(compiled);
     true
 }
 
 /// Returns whether no other rows are much farther from dependence here than those in use: a change
 /// point of theirs may then be one of the mechanism.
-pub(in crate::kinematics) fn are_rows_fit(model: &Model, state: &State) -> bool {
-    fitter_rows(model, state).is_none()
+pub(in crate::kinematics) fn are_rows_fit(compiled: &CompiledMechanism, state: &State) -> bool {
+    fitter_rows(compiled, state).is_none()
 }
 
 /// Returns whether the rows all together are nearly dependent at the pose.
-pub(in crate::kinematics) fn is_nearly_singular(model: &Model, state: &State) -> bool {
-    choose_among(model, &jacobian_rows(model, state), FITTER).weakest < FIT
+pub(in crate::kinematics) fn is_nearly_singular(
+    compiled: &CompiledMechanism,
+    state: &State,
+) -> bool {
+    choose_among(compiled, &jacobian_rows(compiled, state), FITTER).weakest < FIT
 }
 
 /// Returns a choice of rows that are much farther from dependence here than those in use, if
 /// these are near to it. At one pose rows change once at the most: the choice depends on the pose
 /// alone, and rows in use are not chosen again.
-fn fitter_rows(model: &Model, state: &State) -> Option<Choice> {
-    if model.redundant.is_empty() || !state.pose.crossings.is_empty() {
+fn fitter_rows(compiled: &CompiledMechanism, state: &State) -> Option<Choice> {
+    if compiled.redundant.is_empty() || !state.pose.crossings.is_empty() {
         return None;
     }
-    let now = &model.redundant.now;
-    let rows = jacobian_rows(model, state);
-    let here = fitness_without(model, &rows, now);
+    let now = &compiled.redundant.now;
+    let rows = jacobian_rows(compiled, state);
+    let here = fitness_without(compiled, &rows, now);
     if here.weakest > FITTER {
         return None;
     }
-    let choice = choose_among(model, &rows, FITTER);
+    let choice = choose_among(compiled, &rows, FITTER);
     if choice.set_aside.len() != now.len() || choice.set_aside == *now {
         return None;
     }
     // At a change point all rows lose rank, but some lose more of it than others.
-    let there = fitness_without(model, &rows, &choice.set_aside);
+    let there = fitness_without(compiled, &rows, &choice.set_aside);
     (there.log_determinant > here.log_determinant + WORTH.ln()).then_some(choice)
 }
 
 /// Returns the joint or constraint that a row set aside finds open by more than rounding.
 /// Allocates nothing if there is none.
-pub(in crate::kinematics) fn opened(model: &Model, state: &State) -> Option<OpenJoint> {
-    let Model {
+pub(in crate::kinematics) fn opened(
+    compiled: &CompiledMechanism,
+    state: &State,
+) -> Option<OpenJoint> {
+    let CompiledMechanism {
         system, redundant, ..
-    } = model;
+    } = compiled;
     let is_open = |row: &&usize| !holds(system.evaluate_row(**row, state.values(), |_, _| {}));
     let first = redundant.now.iter().find(is_open)?;
-    let element = system.equations()[*first].element;
-    let mut open = open_joints(model, state, &system.rows_of(&[element]), 0.0);
+    let origin = system.equations()[*first].origin;
+    let mut open = open_joints(compiled, state, &system.rows_of(&[origin]), 0.0);
     open.pop().map(|(_, joint)| joint)
 }
 
 /// Chooses among the rows of a Jacobian: the drivers', then, in the order of
 /// declaration, those whose remainder exceeds `fit`; if these are too few, those with a smaller
 /// remainder.
-fn choose_among(model: &Model, rows: &[Row], mut fit: f64) -> Choice {
-    let unknowns = model.system.unknowns();
+fn choose_among(compiled: &CompiledMechanism, rows: &[Row], mut fit: f64) -> Choice {
+    let unknowns = compiled.system.unknowns();
     let mut echelon = Echelon::new(unknowns, rows);
-    let mut set_aside = drivers_first(&model.system);
+    let mut set_aside = drivers_first(&compiled.system);
     loop {
         set_aside.retain(|&row| echelon.offer(row, &rows[row], fit).is_some());
         let complete = echelon.kept().len() == unknowns;
@@ -300,9 +313,9 @@ fn choose_among(model: &Model, rows: &[Row], mut fit: f64) -> Choice {
 }
 
 /// Returns how far the rows of a Jacobian but these are from dependence.
-fn fitness_without(model: &Model, rows: &[Row], set_aside: &[usize]) -> Fitness {
-    let mut echelon = Echelon::new(model.system.unknowns(), rows);
-    for row in drivers_first(&model.system) {
+fn fitness_without(compiled: &CompiledMechanism, rows: &[Row], set_aside: &[usize]) -> Fitness {
+    let mut echelon = Echelon::new(compiled.system.unknowns(), rows);
+    for row in drivers_first(&compiled.system) {
         if set_aside.binary_search(&row).is_err()
             && echelon.offer(row, &rows[row], DEPENDENT).is_some()
         {

@@ -7,7 +7,7 @@ use crate::kinematics::assembly::part::SMALL_PART;
 use crate::kinematics::assembly::search::{NoBranch, search};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::newton::SINGULAR;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::Target;
 use crate::kinematics::system::structure::Structure;
@@ -18,42 +18,46 @@ const SUPERFLUOUS: f64 = 1e-3;
 
 /// Closes the mechanism on all rows. Returns `None` if they are satisfied, otherwise the largest
 /// scaled residual of the nearest pose found, where the bodies then are.
-pub(super) fn close_on_all(model: &mut Model, state: &mut State, estimate: &[f64]) -> Option<f64> {
-    let all: Vec<_> = (0..model.system.equations().len()).collect();
-    if !is_small(&model.system) {
+pub(super) fn close_on_all(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+    estimate: &[f64],
+) -> Option<f64> {
+    let all: Vec<_> = (0..compiled.system.equations().len()).collect();
+    if !is_small(&compiled.system) {
         // Too many unknowns for a minimisation to go far: most blocks close by themselves.
-        find_start(model, state, estimate);
-        let mut problem = LeastSquares::of_all(&model.system, &all);
-        problem.close(&mut state.block_state(&model.system))?;
+        find_start(compiled, state, estimate);
+        let mut problem = LeastSquares::of_all(&compiled.system, &all);
+        problem.close(&mut state.block_state(&compiled.system))?;
     }
-    close_on(&model.system, state, &all, estimate)
+    close_on(&compiled.system, state, &all, estimate)
 }
 
 /// Assembles block by block on rows that can be paired with unknowns, the drivers' first, then in
 /// the order of declaration. In a block that does not close it leaves out a row that the others
 /// make superfluous, and others get their turn. Returns the failure if no pose is found.
 pub(super) fn find_start(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     estimate: &[f64],
 ) -> Option<NoBranch> {
     let mut left_out = Vec::new();
     loop {
-        let order = drivers_first(&model.system).into_iter();
+        let order = drivers_first(&compiled.system).into_iter();
         let order = order.filter(|row| !left_out.contains(row));
-        model.redundant.now = Structure::left_over(&model.system, order)?;
-        state.compile(model);
-        state.at.set_pose(model.system.mechanism(), estimate);
-        let failure = search(model, state, estimate).err();
+        compiled.redundant.now = Structure::left_over(&compiled.system, order)?;
+        state.compile(compiled);
+        state.at.set_pose(compiled.system.mechanism(), estimate);
+        let failure = search(compiled, state, estimate).err();
         let block = match &failure {
             Some(failure) => failure.block,
             // Rows that depend on each other may close by chance.
             None => {
-                let mut blocks = model.plan.blocks.iter_mut();
+                let mut blocks = compiled.plan.blocks.iter_mut();
                 blocks.position(|block| block.rcond() < SINGULAR)?
             }
         };
-        match superfluous_in(model, state, block, estimate) {
+        match superfluous_in(compiled, state, block, estimate) {
             Some(row) => left_out.push(row),
             None => return failure,
         }
@@ -63,31 +67,31 @@ pub(super) fn find_start(
 /// Returns the last row of a block that the others make superfluous where it closes, behind those
 /// before it; `None` if there is none, or the block does not close or is large.
 fn superfluous_in(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &mut State,
     block: usize,
     estimate: &[f64],
 ) -> Option<usize> {
-    let block = &model.plan.blocks[block];
+    let block = &compiled.plan.blocks[block];
     let columns = block.columns();
     if columns.len() > SMALL_PART {
         return None;
     }
-    let mut part = LeastSquares::new(&model.system, block.rows(), columns);
-    let mut block_state = state.block_state(&model.system);
+    let mut part = LeastSquares::new(&compiled.system, block.rows(), columns);
+    let mut block_state = state.block_state(&compiled.system);
     part.start(&mut block_state, estimate, 0);
     part.minimise_growing(&mut block_state);
     if part.close(&mut block_state).is_some() {
         return None;
     }
-    let mut rows = jacobian_rows(model, state);
+    let mut rows = jacobian_rows(compiled, state);
     for row in &mut rows {
         row.retain(|(column, _)| columns.contains(column));
     }
     let own = part.rows.iter().map(|&row| &rows[row]);
-    let mut echelon = Echelon::new(model.system.unknowns(), own);
+    let mut echelon = Echelon::new(compiled.system.unknowns(), own);
     let is_driver = |row: &usize| {
-        let target = &model.system.equations()[*row].target;
+        let target = &compiled.system.equations()[*row].target;
         matches!(target, Target::Driver(_))
     };
     let (drivers, others): (Vec<_>, Vec<_>) = part.rows.iter().partition(|row| is_driver(row));

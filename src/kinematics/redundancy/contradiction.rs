@@ -3,7 +3,7 @@
 use super::closure::find_start;
 use super::rank::{DEPENDENT, constraint_rows, find_freedom, jacobian_rows};
 use super::slip::{AGREES, contradiction, explain_slip};
-use crate::kinematics::Element;
+use crate::kinematics::Origin;
 use crate::kinematics::assembly::closure::{close_near, close_on, is_small};
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
@@ -11,19 +11,19 @@ use crate::kinematics::assembly::nearest::{AN_EQUATION, search_at_once};
 use crate::kinematics::assembly::part::STARTS;
 use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 
-/// An element with less than this part of the largest residual has no part in the gap.
+/// An origin with less than this part of the largest residual has no part in the gap.
 const TAKES_PART: f64 = 1e-3;
-/// Most elements in a large mechanism of which a smallest contradictory set is looked for, by
+/// Most origins in a large mechanism of which a smallest contradictory set is looked for, by
 /// leaving them out one by one.
 const MOST_ELEMENTS: usize = 12;
 
 /// Explains why a mechanism does not close. It is at a nearest pose, where its rows are open by up
 /// to `gap`, scaled.
 pub(super) fn explain_open(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     gap: f64,
     estimate: &[f64],
@@ -33,81 +33,81 @@ pub(super) fn explain_open(
             what: AN_EQUATION.to_owned(),
         };
     }
-    let all: Vec<_> = (0..model.system.equations().len()).collect();
-    let slip = explain_slip(model, state, gap).or_else(|| {
+    let all: Vec<_> = (0..compiled.system.equations().len()).collect();
+    let slip = explain_slip(compiled, state, gap).or_else(|| {
         // The nearest pose of all may be on another branch than the estimates.
-        let mut nearest = vec![0.0; model.system.unknowns()];
+        let mut nearest = vec![0.0; compiled.system.unknowns()];
         state.at.copy_pose(&mut nearest);
-        let gap = close_near(&model.system, state, &all, estimate)?;
-        let slip = explain_slip(model, state, gap);
-        state.at.set_pose(model.system.mechanism(), &nearest);
+        let gap = close_near(&compiled.system, state, &all, estimate)?;
+        let slip = explain_slip(compiled, state, gap);
+        state.at.set_pose(compiled.system.mechanism(), &nearest);
         slip
     });
     if let Some(error) = slip {
         return error;
     }
-    let mut open = elements_open(model, state, &all, gap);
+    let mut open = origins_open(compiled, state, &all, gap);
     // Excess drivers ask for a motion that the constraints, closed by themselves, do not give.
-    let constraints = constraint_rows(&model.system);
-    let without_drivers = close_on(&model.system, state, &constraints, estimate);
+    let constraints = constraint_rows(&compiled.system);
+    let without_drivers = close_on(&compiled.system, state, &constraints, estimate);
     if without_drivers.is_none()
-        && let Err(error) = find_freedom(model, state)
+        && let Err(error) = find_freedom(compiled, state)
     {
         return error;
     }
-    let system = &model.system;
+    let system = &compiled.system;
     if let Some(gap) = without_drivers {
-        open = elements_open(model, state, &constraints, gap);
+        open = origins_open(compiled, state, &constraints, gap);
     }
     if close_on(system, state, &system.rows_of(&open), estimate).is_none() {
-        open = elements_open(model, state, &all, 0.0);
+        open = origins_open(compiled, state, &all, 0.0);
     }
     if is_small(system) || open.len() <= MOST_ELEMENTS {
-        // The element declared first stays, of two that can replace each other.
-        for element in open.clone().into_iter().rev() {
-            let others: Vec<_> = open.iter().copied().filter(|e| *e != element).collect();
+        // The origin declared first stays, of two that can replace each other.
+        for origin in open.clone().into_iter().rev() {
+            let others: Vec<_> = open.iter().copied().filter(|e| *e != origin).collect();
             if close_on(system, state, &system.rows_of(&others), estimate).is_some() {
                 open = others;
             }
         }
     }
     let rows = system.rows_of(&open);
-    let elements = open.clone();
+    let origins = open.clone();
     // People look for one joint that does not meet: the one declared last.
-    let is_driver = |element: &Element| matches!(element, Element::Driver(_));
-    let last = open.iter().rfind(|element| !is_driver(element));
+    let is_driver = |origin: &Origin| matches!(origin, Origin::Driver(_));
+    let last = open.iter().rfind(|origin| !is_driver(origin));
     let Some(&last) = last.or(open.last()) else {
-        return not_found(model, state, Vec::new());
+        return not_found(compiled, state, Vec::new());
     };
     let rows_of_last = system.rows_of(&[last]);
-    open.retain(|element| *element != last);
+    open.retain(|origin| *origin != last);
     let others = system.rows_of(&open);
     close_on(system, state, &others, estimate);
-    let contradict = depend_on(model, state, &rows_of_last, &others);
+    let contradict = depend_on(compiled, state, &rows_of_last, &others);
     close_on(system, state, &rows, estimate);
     let mut problem = LeastSquares::of_all(system, &rows);
-    let gap = gather(model, state, &mut problem, last);
-    let gathered = open_joints(model, state, &rows_of_last, gap);
+    let gap = gather(compiled, state, &mut problem, last);
+    let gathered = open_joints(compiled, state, &rows_of_last, gap);
     let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
     match gathered {
         Some(open) if contradict && gap > AGREES => {
-            contradiction(model, state, &elements, last, open)
+            contradiction(compiled, state, &origins, last, open)
         }
-        gathered => match find_start(model, state, estimate) {
+        gathered => match find_start(compiled, state, estimate) {
             // A mechanism impossible with fewer rows is impossible with all.
             Some(failure) if failure.proved => {
-                let error = search_at_once(model, state, failure, estimate).err();
+                let error = search_at_once(compiled, state, failure, estimate).err();
                 let open = gathered.into_iter().collect();
-                error.unwrap_or_else(|| not_found(model, state, open))
+                error.unwrap_or_else(|| not_found(compiled, state, open))
             }
-            _ => not_found(model, state, gathered.into_iter().collect()),
+            _ => not_found(compiled, state, gathered.into_iter().collect()),
         },
     }
 }
 
 /// Returns the error for a mechanism without a proof, at the nearest pose found.
-fn not_found(model: &Model, state: &State, open: Vec<OpenJoint>) -> Error {
-    let mut nearest = vec![0.0; model.system.unknowns()];
+fn not_found(compiled: &CompiledMechanism, state: &State, open: Vec<OpenJoint>) -> Error {
+    let mut nearest = vec![0.0; compiled.system.unknowns()];
     state.at.copy_pose(&mut nearest);
     Error::NotAssembled {
         verdict: Verdict::NotFound { starts: STARTS },
@@ -116,25 +116,35 @@ fn not_found(model: &Model, state: &State, open: Vec<OpenJoint>) -> Error {
     }
 }
 
-/// Returns the elements with a noticeable part of a largest residual.
-fn elements_open(model: &Model, state: &State, rows: &[usize], largest: f64) -> Vec<Element> {
-    let system = &model.system;
+/// Returns the origins with a noticeable part of a largest residual.
+fn origins_open(
+    compiled: &CompiledMechanism,
+    state: &State,
+    rows: &[usize],
+    largest: f64,
+) -> Vec<Origin> {
+    let system = &compiled.system;
     let rows = rows.iter().filter(|&&row| {
         let value = system.evaluate_row(row, state.values(), |_, _| {});
         value.value.abs() >= TAKES_PART * largest
     });
-    let mut elements: Vec<_> = rows.map(|&row| system.equations()[row].element).collect();
-    elements.sort_unstable();
-    elements.dedup();
-    elements
+    let mut origins: Vec<_> = rows.map(|&row| system.equations()[row].origin).collect();
+    origins.sort_unstable();
+    origins.dedup();
+    origins
 }
 
 /// Returns whether some of these rows depend on the others, on which the mechanism is closed. A
 /// loop that is too short does not close, but could if it were longer; rows that depend on the
 /// others have no say whatever.
-fn depend_on(model: &Model, state: &State, rows: &[usize], others: &[usize]) -> bool {
-    let all = jacobian_rows(model, state);
-    let mut echelon = Echelon::new(model.system.unknowns(), &all);
+fn depend_on(
+    compiled: &CompiledMechanism,
+    state: &State,
+    rows: &[usize],
+    others: &[usize],
+) -> bool {
+    let all = jacobian_rows(compiled, state);
+    let mut echelon = Echelon::new(compiled.system.unknowns(), &all);
     for &row in others {
         echelon.offer(row, &all[row], DEPENDENT);
     }

@@ -1,12 +1,12 @@
 //! Degrees of freedom, by rank: the motions that the constraints leave free, those that drivers
 //! drive, and the constraints that are redundant.
 
-use crate::kinematics::Element;
+use crate::kinematics::Origin;
 use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::Error;
 use crate::kinematics::linear::{Echelon, ReducedRow, Row};
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism};
@@ -40,52 +40,59 @@ struct Ranks {
 ///
 /// [`Error::Structure`] if the drivers leave a motion free or there are too many,
 /// [`Error::Singular`] if the constraints lose rank here without a free motion.
-pub(super) fn find_freedom(model: &mut Model, state: &mut State) -> Result<Vec<usize>, Error> {
-    let unknowns = model.system.unknowns();
+pub(super) fn find_freedom(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+) -> Result<Vec<usize>, Error> {
+    let unknowns = compiled.system.unknowns();
     let mut home = vec![0.0; unknowns];
     state.at.copy_pose(&mut home);
-    let here = ranks(model, state);
+    let here = ranks(compiled, state);
     let leaves_motion = here.constraints < unknowns;
     let mut away = Vec::new();
     if leaves_motion {
-        away = ranks_with_drivers_moved(model, state, &home);
+        away = ranks_with_drivers_moved(compiled, state, &home);
         let is_full = |ranks: &Ranks| ranks.echelon.kept().len() == unknowns;
         if !away.iter().any(is_full) {
-            away.extend(ranks_along_constraints(model, state, &home));
+            away.extend(ranks_along_constraints(compiled, state, &home));
         }
-        state.at.set_pose(model.system.mechanism(), &home);
+        state.at.set_pose(compiled.system.mechanism(), &home);
         if away.is_empty() {
-            return Err(singular_position(model, state));
+            return Err(singular_position(compiled, state));
         }
     }
     let rank = |ranks: &Ranks| (ranks.echelon.kept().len(), ranks.constraints);
     let generic = away.into_iter().max_by_key(rank).unwrap_or(here);
-    judge(&model.system, &generic)?;
+    judge(&compiled.system, &generic)?;
     Ok(generic.redundant)
 }
 
 /// Returns the ranks where the drivers have moved a little, both ways, as far as the mechanism
 /// closes there. Excess drivers hold each other.
-fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> Vec<Ranks> {
+fn ranks_with_drivers_moved(
+    compiled: &CompiledMechanism,
+    state: &mut State,
+    home: &[f64],
+) -> Vec<Ranks> {
     let drivers = state.pose.drivers.clone();
-    let all: Vec<_> = (0..model.system.equations().len()).collect();
-    let mut problem = LeastSquares::of_all(&model.system, &all);
+    let all: Vec<_> = (0..compiled.system.equations().len()).collect();
+    let mut problem = LeastSquares::of_all(&compiled.system, &all);
     let mut found = Vec::new();
     for sense in [AWAY, -AWAY] {
         if drivers.is_empty() {
             break;
         }
-        state.at.set_pose(model.system.mechanism(), home);
+        state.at.set_pose(compiled.system.mechanism(), home);
         let moved = drivers.iter().enumerate().map(|(k, value)| {
-            let row = model.system.driver_row(DriverId(k));
+            let row = compiled.system.driver_row(DriverId(k));
             value + sense * mixture(k) / row.row_scale(&state.at)
         });
         state.pose.drivers = moved.collect();
         if problem
-            .close(&mut state.block_state(&model.system))
+            .close(&mut state.block_state(&compiled.system))
             .is_none()
         {
-            found.push(ranks(model, state));
+            found.push(ranks(compiled, state));
         }
     }
     state.pose.drivers = drivers;
@@ -93,10 +100,14 @@ fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> V
 }
 
 /// Returns the ranks a little way along a motion that the constraints leave free, both ways.
-fn ranks_along_constraints(model: &Model, state: &mut State, home: &[f64]) -> Vec<Ranks> {
-    let system = &model.system;
+fn ranks_along_constraints(
+    compiled: &CompiledMechanism,
+    state: &mut State,
+    home: &[f64],
+) -> Vec<Ranks> {
+    let system = &compiled.system;
     state.at.set_pose(system.mechanism(), home);
-    let motion = free_motion(model, state);
+    let motion = free_motion(compiled, state);
     let mut problem = LeastSquares::of_all(system, &constraint_rows(system));
     let mut found = Vec::new();
     let size = state.at.size();
@@ -113,7 +124,7 @@ fn ranks_along_constraints(model: &Model, state: &mut State, home: &[f64]) -> Ve
         let moves = home.iter().enumerate();
         let moved = moves.map(|(k, home)| (state.at.coordinate(k) - home).abs() / scale(k));
         if moved.fold(0.0, f64::max) > 0.1 * AWAY {
-            found.push(ranks(model, state));
+            found.push(ranks(compiled, state));
         }
     }
     found
@@ -127,18 +138,18 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
     if free == 0 && ranks.excess.is_empty() {
         return Ok(());
     }
-    let mut excess: Vec<Element> = Vec::new();
+    let mut excess: Vec<Origin> = Vec::new();
     for left_out in &ranks.excess {
         let equations = system.equations();
-        let element = |row: usize| equations[row].element;
+        let origin = |row: usize| equations[row].origin;
         let others = ranks.echelon.combination(left_out, TAKES_PART);
-        let mut set: Vec<_> = others.into_iter().map(|(row, _)| element(row)).collect();
-        let is_driver = |element: &Element| matches!(element, Element::Driver(_));
+        let mut set: Vec<_> = others.into_iter().map(|(row, _)| origin(row)).collect();
+        let is_driver = |origin: &Origin| matches!(origin, Origin::Driver(_));
         if set.iter().any(is_driver) {
             // Drivers that exclude each other; the joints only transmit it.
             set.retain(is_driver);
         }
-        set.push(element(left_out.row));
+        set.push(origin(left_out.row));
         excess.extend(set);
     }
     excess.sort_unstable();
@@ -152,7 +163,7 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
         loose,
         excess: excess
             .into_iter()
-            .map(|element| element.describe(mechanism))
+            .map(|origin| origin.describe(mechanism))
             .collect(),
     })
 }
@@ -175,15 +186,15 @@ fn suspect_slots(mechanism: &Mechanism, loose: &[String]) -> Vec<String> {
 }
 
 /// Returns the ranks at the present places of the bodies.
-fn ranks(model: &Model, state: &State) -> Ranks {
-    let rows = jacobian_rows(model, state);
-    let mut echelon = Echelon::new(model.system.unknowns(), &rows);
+fn ranks(compiled: &CompiledMechanism, state: &State) -> Ranks {
+    let rows = jacobian_rows(compiled, state);
+    let mut echelon = Echelon::new(compiled.system.unknowns(), &rows);
     let mut redundant = Vec::new();
     let mut excess = Vec::new();
     let mut constraints = 0;
     // The drivers' rows come last.
     for (row, entries) in rows.iter().enumerate() {
-        let is_driver = matches!(model.system.equations()[row].target, Target::Driver(_));
+        let is_driver = matches!(compiled.system.equations()[row].target, Target::Driver(_));
         if !is_driver {
             constraints += 1;
         }
@@ -203,10 +214,10 @@ fn ranks(model: &Model, state: &State) -> Ranks {
 
 /// Returns a motion that the constraints leave free at the present places of the bodies, scaled;
 /// of several a mixture of all.
-fn free_motion(model: &Model, state: &State) -> Vec<f64> {
-    let rows = jacobian_rows(model, state);
-    let mut echelon = Echelon::new(model.system.unknowns(), &rows);
-    for row in constraint_rows(&model.system) {
+fn free_motion(compiled: &CompiledMechanism, state: &State) -> Vec<f64> {
+    let rows = jacobian_rows(compiled, state);
+    let mut echelon = Echelon::new(compiled.system.unknowns(), &rows);
+    for row in constraint_rows(&compiled.system) {
         echelon.offer(row, &rows[row], DEPENDENT);
     }
     let free = echelon.free().into_iter().enumerate();
@@ -230,11 +241,16 @@ pub(in crate::kinematics) fn drivers_first(system: &System) -> Vec<usize> {
 }
 
 /// Returns the Jacobian by rows at the present places of the bodies, scaled.
-pub(in crate::kinematics) fn jacobian_rows(model: &Model, state: &State) -> Vec<Row> {
-    let rows = 0..model.system.equations().len();
+pub(in crate::kinematics) fn jacobian_rows(
+    compiled: &CompiledMechanism,
+    state: &State,
+) -> Vec<Row> {
+    let rows = 0..compiled.system.equations().len();
     let gradient = |row| {
         let mut entries = Row::new();
-        model.system.sparse_row(row, state.values(), &mut entries);
+        compiled
+            .system
+            .sparse_row(row, state.values(), &mut entries);
         entries
     };
     rows.map(gradient).collect()
@@ -242,9 +258,9 @@ pub(in crate::kinematics) fn jacobian_rows(model: &Model, state: &State) -> Vec<
 
 /// Explains a pose at which the rows all together lose rank: names the bodies that can move there
 /// though no driver does.
-pub(super) fn singular_position(model: &Model, state: &State) -> Error {
-    let system = &model.system;
-    let rows = jacobian_rows(model, state);
+pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> Error {
+    let system = &compiled.system;
+    let rows = jacobian_rows(compiled, state);
     let order = drivers_first(system);
     let eliminate = |least: f64| {
         let mut echelon = Echelon::new(system.unknowns(), &rows);

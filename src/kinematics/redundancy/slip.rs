@@ -5,12 +5,12 @@
 //! so the rows' dependence is judged at the nearest pose, by a rank that is as coarse as the gap.
 
 use super::rank::{DEPENDENT, constraint_rows, jacobian_rows};
-use crate::kinematics::Element;
+use crate::kinematics::Origin;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::{Error, Fit, OpenJoint, OpenPose};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};
@@ -32,8 +32,8 @@ const TAKES_PART: f64 = 3.0;
 
 /// Returns the error for redundant constraints that are open by more than rounding at the present
 /// pose, where the mechanism is nearly closed.
-pub(super) fn explain_misfit(model: &Model, state: &mut State) -> Option<Error> {
-    let system = &model.system;
+pub(super) fn explain_misfit(compiled: &CompiledMechanism, state: &mut State) -> Option<Error> {
+    let system = &compiled.system;
     let rows = 0..system.equations().len();
     let open = rows.map(|row| {
         let value = system.evaluate_row(row, state.values(), |_, _| {});
@@ -46,7 +46,7 @@ pub(super) fn explain_misfit(model: &Model, state: &mut State) -> Option<Error> 
         (gap.max(row.0), excess.max(row.1))
     });
     if excess > AGREES {
-        explain_slip(model, state, gap)
+        explain_slip(compiled, state, gap)
     } else {
         None
     }
@@ -55,52 +55,56 @@ pub(super) fn explain_misfit(model: &Model, state: &mut State) -> Option<Error> 
 /// Returns the error for nearly redundant constraints; `None` if the mechanism would not be
 /// redundant without the gap, or is far from closed. Its rows are open by up to `gap`, scaled, at
 /// the present pose.
-pub(super) fn explain_slip(model: &Model, state: &mut State, gap: f64) -> Option<Error> {
-    let elements = nearly_dependent(model, state, gap)?;
-    let last = *elements.last()?;
-    let all: Vec<_> = (0..model.system.equations().len()).collect();
-    let mut problem = LeastSquares::of_all(&model.system, &all);
-    let gathered = gather(model, state, &mut problem, last);
-    let rows = model.system.rows_of(&[last]);
-    let open = open_joints(model, state, &rows, gathered);
+pub(super) fn explain_slip(
+    compiled: &CompiledMechanism,
+    state: &mut State,
+    gap: f64,
+) -> Option<Error> {
+    let origins = nearly_dependent(compiled, state, gap)?;
+    let last = *origins.last()?;
+    let all: Vec<_> = (0..compiled.system.equations().len()).collect();
+    let mut problem = LeastSquares::of_all(&compiled.system, &all);
+    let gathered = gather(compiled, state, &mut problem, last);
+    let rows = compiled.system.rows_of(&[last]);
+    let open = open_joints(compiled, state, &rows, gathered);
     let (_, open) = open.into_iter().next()?;
-    Some(contradiction(model, state, &elements, last, open))
+    Some(contradiction(compiled, state, &origins, last, open))
 }
 
-/// Returns the error for elements that contradict each other; `last` is open, all others are
+/// Returns the error for origins that contradict each other; `last` is open, all others are
 /// closed.
 pub(super) fn contradiction(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
-    elements: &[Element],
-    last: Element,
+    origins: &[Origin],
+    last: Origin,
     open: OpenJoint,
 ) -> Error {
-    let mechanism = model.system.mechanism();
-    let names = elements.iter().map(|element| element.describe(mechanism));
-    let mut q = vec![0.0; model.system.unknowns()];
+    let mechanism = compiled.system.mechanism();
+    let names = origins.iter().map(|origin| origin.describe(mechanism));
+    let mut q = vec![0.0; compiled.system.unknowns()];
     state.at.copy_pose(&mut q);
     Error::Contradiction {
-        elements: names.collect(),
+        origins: names.collect(),
         open,
-        fit: fit(&model.system, state, last).map(Box::new),
+        fit: fit(&compiled.system, state, last).map(Box::new),
         nearest: Box::new(OpenPose { open: last, q }),
     }
 }
 
 /// Returns the constraints of the dependent row that is open most, if the rank is full but for rows
 /// that depend on constraints.
-fn nearly_dependent(model: &Model, state: &State, gap: f64) -> Option<Vec<Element>> {
+fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Option<Vec<Origin>> {
     if gap.is_nan() || gap > LARGEST {
         return None;
     }
-    let system = &model.system;
+    let system = &compiled.system;
     let equations = system.equations();
     let left = (LEFT * gap.sqrt()).clamp(DEPENDENT, MOST_LEFT);
-    let rows = jacobian_rows(model, state);
+    let rows = jacobian_rows(compiled, state);
     let residual = |row: usize| system.evaluate_row(row, state.values(), |_, _| {}).value;
     let mut echelon = Echelon::new(system.unknowns(), &rows);
-    let mut worst: Option<(f64, Vec<Element>)> = None;
+    let mut worst: Option<(f64, Vec<Origin>)> = None;
     for row in constraint_rows(system) {
         let Some(dependent) = echelon.offer(row, &rows[row], left) else {
             continue;
@@ -115,11 +119,11 @@ fn nearly_dependent(model: &Model, state: &State, gap: f64) -> Option<Vec<Elemen
             let least = TAKES_PART * dependent.remainder.max(DEPENDENT);
             let others = combination.into_iter();
             let others = others.filter(|(_, factor)| factor.abs() > least);
-            let mut elements: Vec<_> = others.map(|(other, _)| equations[other].element).collect();
-            elements.push(equations[row].element);
-            elements.sort_unstable();
-            elements.dedup();
-            worst = Some((miss, elements));
+            let mut origins: Vec<_> = others.map(|(other, _)| equations[other].origin).collect();
+            origins.push(equations[row].origin);
+            origins.sort_unstable();
+            origins.dedup();
+            worst = Some((miss, origins));
         }
     }
     for (row, equation) in equations.iter().enumerate() {
@@ -130,15 +134,15 @@ fn nearly_dependent(model: &Model, state: &State, gap: f64) -> Option<Vec<Elemen
             }
         }
     }
-    let (_, elements) = worst?;
-    (echelon.kept().len() == system.unknowns()).then_some(elements)
+    let (_, origins) = worst?;
+    (echelon.kept().len() == system.unknowns()).then_some(origins)
 }
 
-/// Returns the length that would close an element: that of a link, or of a body that two pins
-/// hold. All other elements are closed at the present pose.
-fn fit(system: &System, state: &State, element: Element) -> Option<Fit> {
+/// Returns the length that would close an origin: that of a link, or of a body that two pins
+/// hold. All other origins are closed at the present pose.
+fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
     let mechanism = system.mechanism();
-    let Element::Joint(index) = element else {
+    let Origin::Joint(index) = origin else {
         return None;
     };
     let joint = &mechanism.joints[index];
@@ -146,9 +150,9 @@ fn fit(system: &System, state: &State, element: Element) -> Option<Fit> {
     let length = |from, to| (point(to) - point(from)).norm();
     match joint.kind {
         JointKind::Link { .. } => {
-            let row = system.rows_of(&[element])[0];
+            let row = system.rows_of(&[origin])[0];
             Some(Fit {
-                element: element.describe(mechanism),
+                origin: origin.describe(mechanism),
                 between: None,
                 length: length(joint.from, joint.to),
                 present: state.targets.constant(row),
@@ -170,7 +174,7 @@ fn fit(system: &System, state: &State, element: Element) -> Option<Fit> {
             let (body, own, partner, other) = found.pop()?;
             let name = |marker: MarkerId| mechanism.markers[marker.index()].name.clone();
             Some(Fit {
-                element: format!("body `{}`", mechanism.bodies[body.index()].name),
+                origin: format!("body `{}`", mechanism.bodies[body.index()].name),
                 between: Some([name(other), name(own)]),
                 length: length(other, partner),
                 present: length(other, own),
@@ -194,7 +198,7 @@ fn other_pin(system: &System, body: BodyId, pin: usize) -> Option<MarkerId> {
     });
     let mut other = None;
     for (_, equation) in touching {
-        let Element::Joint(index) = equation.element else {
+        let Origin::Joint(index) = equation.origin else {
             return None;
         };
         let joint = &mechanism.joints[index];

@@ -7,7 +7,7 @@
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::newton::Rejected;
-use crate::kinematics::plan::model::{ContourRow, Model};
+use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, ContourRow};
 use crate::kinematics::state::State;
 
 /// The most by which a row may be open between the ends of a sub-step, scaled.
@@ -23,13 +23,13 @@ const NARROW: f64 = 1e-3;
 ///
 /// [`Rejected`] where such a row may be open.
 pub(in crate::kinematics) fn watch_between(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
     bounds: &mut StepBounds,
 ) -> Result<(), Rejected> {
-    let mut rows = model.redundant.contour_rows.iter();
+    let mut rows = compiled.redundant.contour_rows.iter();
     rows.try_for_each(|row| {
-        let step_ratio = match open_between(model, state, row, bounds) {
+        let step_ratio = match open_between(compiled, state, row, bounds) {
             Ok(open) => open / OPEN_BETWEEN,
             Err(largest_move) if largest_move <= NARROW => {
                 bounds.checked = true;
@@ -47,12 +47,12 @@ pub(in crate::kinematics) fn watch_between(
 ///
 /// Without a bound, the largest move of its unknowns, in radians and characteristic lengths.
 fn open_between(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
     row: &ContourRow,
     bounds: &mut StepBounds,
 ) -> Result<f64, f64> {
-    let Model { system, plan, .. } = model;
+    let CompiledMechanism { system, plan, .. } = compiled;
     let at = &state.at;
     let mut largest_move = 0.0_f64;
     for &column in &row.columns {
@@ -65,7 +65,7 @@ fn open_between(
     }
     let equation = &system.equations()[row.row];
     if bounds.parameters.moves(row.row) {
-        let open = open_while_moving(model, state, row, bounds);
+        let open = open_while_moving(compiled, state, row, bounds);
         for &column in &row.columns {
             bounds.region[column] = 0.0;
             bounds.chord[column] = 0.0;
@@ -94,12 +94,12 @@ fn open_between(
 /// Bounds a row over a sub-step on which parameters move its numbers, scaled; `None` without a bound.
 #[cold]
 fn open_while_moving(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
     row: &ContourRow,
     bounds: &mut StepBounds,
 ) -> Option<f64> {
-    let Model { system, plan, .. } = model;
+    let CompiledMechanism { system, plan, .. } = compiled;
     let at = &state.at;
     let equation = &system.equations()[row.row];
     let deviation = |bounds: &StepBounds, column| bounds.deviation(column, &plan.pivots);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::kinematics::analysis::Sensitivity;
 use crate::kinematics::error::Error;
 use crate::kinematics::forces::{ForceQuantity, Reported};
-use crate::kinematics::origin::Element;
+use crate::kinematics::origin::Origin;
 use crate::kinematics::path::{Path, Rates};
 use crate::kinematics::solver::Solver;
 use crate::kinematics::system::System;
@@ -121,7 +121,7 @@ impl Output {
     /// measures, prescribed motions, measures computed from others, forces without the
     /// [omitted reactions](omitted_reactions); in the file's order within each group.
     #[must_use]
-    pub fn of_host(mechanism: &Mechanism, omitted: &[Element]) -> Vec<Self> {
+    pub fn of_host(mechanism: &Mechanism, omitted: &[Origin]) -> Vec<Self> {
         let mut list = List::default();
         list.add_places(mechanism);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
@@ -251,7 +251,7 @@ impl List {
         }
     }
 
-    fn add_derived_and_forces(&mut self, mechanism: &Mechanism, omitted: &[Element]) {
+    fn add_derived_and_forces(&mut self, mechanism: &Mechanism, omitted: &[Origin]) {
         let derived = mechanism.derived.iter().enumerate();
         self.0.extend(derived.map(|(index, measure)| Output {
             name: measure.name.clone(),
@@ -312,10 +312,10 @@ impl List {
     }
 
     /// Adds the reactions of joints and constraints but the omitted ones.
-    fn add_reactions(&mut self, mechanism: &Mechanism, omitted: &[Element]) {
+    fn add_reactions(&mut self, mechanism: &Mechanism, omitted: &[Origin]) {
         for &index in &mechanism.outputs.joints {
             let joint = &mechanism.joints[index];
-            if omitted.contains(&Element::Joint(index)) {
+            if omitted.contains(&Origin::Joint(index)) {
                 continue;
             }
             let reported = Reported::of(&joint.kind);
@@ -335,7 +335,7 @@ impl List {
             }
         }
         for &index in &mechanism.outputs.constraints {
-            if omitted.contains(&Element::Constraint(index)) {
+            if omitted.contains(&Origin::Constraint(index)) {
                 continue;
             }
             let held = &mechanism.constraints[index];
@@ -363,7 +363,7 @@ impl List {
 /// constraints, or reactions of least norm. Otherwise a rank decides, at the file's own values, which
 /// rounding may change; no joint is omitted if the mechanism does not assemble there.
 #[must_use]
-pub fn omitted_reactions(mechanism: &Arc<Mechanism>) -> Option<Vec<Element>> {
+pub fn omitted_reactions(mechanism: &Arc<Mechanism>) -> Option<Vec<Origin>> {
     let omits = mechanism.outputs.indeterminate == Indeterminate::Omit;
     let system = System::new(Arc::clone(mechanism));
     if !mechanism.has_dynamics() || !omits || system.equations().len() <= system.unknowns() {

@@ -5,7 +5,7 @@ use std::fmt;
 use super::lines::{NEARBY, all_that_moves, find_lines};
 use super::near::{LARGEST_BLOCK, NEAR, block_jacobian};
 use crate::kinematics::alignment::Alignment;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 
 /// A mechanism that has come near a singular position.
@@ -39,14 +39,14 @@ impl fmt::Display for Approach {
 /// was last false; `near` is true from then on until the mechanism is away again. Next to a change
 /// point that is crossed there is no warning. Away from singular positions it costs a comparison.
 pub(in crate::kinematics) fn approach(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     near: &mut bool,
 ) -> Option<Approach> {
     if !state.pose.crossings.is_empty() || (!*near && state.regularity >= NEAR) {
         return None;
     }
-    let rcond = state.rcond(model);
+    let rcond = state.rcond(compiled);
     if rcond > AWAY {
         *near = false;
     }
@@ -54,8 +54,8 @@ pub(in crate::kinematics) fn approach(
         return None;
     }
     *near = true;
-    let alignment = weakest_alignment(model, state);
-    let mechanism = model.system.mechanism();
+    let alignment = weakest_alignment(compiled, state);
+    let mechanism = compiled.system.mechanism();
     Some(Approach {
         rcond,
         bodies: alignment.names(mechanism),
@@ -65,26 +65,26 @@ pub(in crate::kinematics) fn approach(
 
 /// Returns the lines that all but meet in the block that is nearest to a singular position, for the
 /// motion of its weakest direction; of a large block all that it moves.
-fn weakest_alignment(model: &mut Model, state: &State) -> Alignment {
+fn weakest_alignment(compiled: &mut CompiledMechanism, state: &State) -> Alignment {
     let mut weakest = (f64::INFINITY, 0);
-    for (index, block) in model.plan.blocks.iter_mut().enumerate() {
+    for (index, block) in compiled.plan.blocks.iter_mut().enumerate() {
         let rcond = block.rcond();
         if rcond < weakest.0 {
             weakest = (rcond, index);
         }
     }
-    let Some(block) = model.plan.blocks.get(weakest.1) else {
+    let Some(block) = compiled.plan.blocks.get(weakest.1) else {
         return Alignment::default();
     };
     let columns = block.columns();
     if columns.len() <= LARGEST_BLOCK {
-        let svd = block_jacobian(model, state, weakest.1).svd(false, true);
+        let svd = block_jacobian(compiled, state, weakest.1).svd(false, true);
         if let Some(right) = svd.v_t {
             let least = right.row(right.nrows() - 1);
             let largest = least.amax();
             let free: Vec<f64> = least.iter().map(|value| value / largest).collect();
-            return find_lines(model, &state.at, (columns, &free), NEARBY);
+            return find_lines(compiled, &state.at, (columns, &free), NEARBY);
         }
     }
-    all_that_moves(model, &state.at, (columns, &vec![1.0; columns.len()]))
+    all_that_moves(compiled, &state.at, (columns, &vec![1.0; columns.len()]))
 }

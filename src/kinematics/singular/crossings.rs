@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::kinematics::newton::Limits;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockPlan, Crossing, SEAM};
 use crate::kinematics::state::{Pose, State};
 use crate::mechanism::Jet;
@@ -18,8 +18,11 @@ const OFF_THE_POSE: f64 = 1e-4;
 pub(in crate::kinematics) const CROSSING_END: f64 = 1e-6;
 
 /// Returns the message for a change point that was passed.
-pub(in crate::kinematics) fn describe_crossing(model: &Model, crossing: &Crossing) -> String {
-    let mechanism = model.system.mechanism();
+pub(in crate::kinematics) fn describe_crossing(
+    compiled: &CompiledMechanism,
+    crossing: &Crossing,
+) -> String {
+    let mechanism = compiled.system.mechanism();
     let driver = &mechanism.drivers[crossing.driver.index()];
     format!(
         "change point passed on the smooth motion, with driver `{}` at {}: {} there",
@@ -32,14 +35,14 @@ pub(in crate::kinematics) fn describe_crossing(model: &Model, crossing: &Crossin
 /// Returns whether this mechanism could have come to the crossings of a pose that was read from
 /// outside, and q lies on them. Compiles the plan for the rows of the crossings.
 pub(in crate::kinematics) fn admits_crossings(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     pose: &Pose,
 ) -> bool {
     let Some(Crossing { set_aside, .. }) = pose.crossings.first().map(|first| &**first) else {
         return true;
     };
-    if !state.set_aside(model, set_aside) {
+    if !state.set_aside(compiled, set_aside) {
         return false;
     }
     let mut blocks: Vec<_> = pose.crossings.iter().map(|c| c.block).collect();
@@ -47,11 +50,11 @@ pub(in crate::kinematics) fn admits_crossings(
     blocks.dedup();
     blocks.len() == pose.crossings.len()
         && pose.crossings.iter().all(|crossing| {
-            let Some(block) = model.plan.blocks.get(crossing.block) else {
+            let Some(block) = compiled.plan.blocks.get(crossing.block) else {
                 return false;
             };
             let columns = block.columns();
-            let Some(driver) = model.only_driver(crossing.block) else {
+            let Some(driver) = compiled.only_driver(crossing.block) else {
                 return false;
             };
             let value = pose.drivers[driver.index()];
@@ -62,7 +65,7 @@ pub(in crate::kinematics) fn admits_crossings(
                 && crossing.coefficients.len() == columns.len()
                 && crossing.free.len() == columns.len()
                 && (crossing.alignment.members.iter())
-                    .all(|member| member.is_of(model.system.mechanism()))
+                    .all(|member| member.is_of(compiled.system.mechanism()))
                 && columns.iter().enumerate().all(|(local, &column)| {
                     let [there, ..] = crossing.evaluate(local, value);
                     (there - pose.q[column]).abs() <= ON * (1.0 + there.abs())
@@ -73,7 +76,11 @@ pub(in crate::kinematics) fn admits_crossings(
 /// Lets a block's unknowns come from a crossing that the pose is within, and closes the blocks
 /// behind it; at the end of the crossing, or if they do not close, the pose stays as it was. Returns
 /// false if the crossing is one of other poses.
-pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Crossing) -> bool {
+pub(super) fn enter_crossing(
+    compiled: &mut CompiledMechanism,
+    state: &mut State,
+    crossing: Crossing,
+) -> bool {
     if crossing
         .place(state.pose.drivers[crossing.driver.index()])
         .abs()
@@ -81,17 +88,17 @@ pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Cro
     {
         return true;
     }
-    if !passes_through_pose(model, state, &crossing) {
+    if !passes_through_pose(compiled, state, &crossing) {
         return false;
     }
     let first = crossing.block;
-    state.add_crossing(model, &Arc::new(crossing));
-    state.move_to_pose(&model.system);
-    let Model {
+    state.add_crossing(compiled, &Arc::new(crossing));
+    state.move_to_pose(&compiled.system);
+    let CompiledMechanism {
         system,
         plan: BlockPlan { blocks, .. },
         ..
-    } = &mut *model;
+    } = &mut *compiled;
     let mut block_state = state.block_state(system);
     let closed = blocks[first..]
         .iter_mut()
@@ -100,29 +107,29 @@ pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Cro
         state.accept_bodies();
     } else {
         let last = state.pose.crossings.len() - 1;
-        state.remove_crossing(model, last);
-        state.move_to_pose(&model.system);
+        state.remove_crossing(compiled, last);
+        state.move_to_pose(&compiled.system);
     }
     true
 }
 
 /// Returns whether the block's unknowns are on a crossing, up to rounding.
-fn passes_through_pose(model: &Model, state: &State, crossing: &Crossing) -> bool {
+fn passes_through_pose(compiled: &CompiledMechanism, state: &State, crossing: &Crossing) -> bool {
     let pose = &state.pose;
     let size = state.at.size();
     let value = pose.drivers[crossing.driver.index()];
-    let columns = model.plan.blocks[crossing.block].columns();
+    let columns = compiled.plan.blocks[crossing.block].columns();
     columns.iter().enumerate().all(|(local, &column)| {
         let [there, ..] = crossing.evaluate(local, value);
         let off = (there - pose.q[column]).abs();
-        off <= OFF_THE_POSE * model.system.column_scale(column, size)
+        off <= OFF_THE_POSE * compiled.system.column_scale(column, size)
     })
 }
 
 /// Removes the crossings at whose end the drivers, with these derivatives along the path, lead out
 /// of them.
 pub(in crate::kinematics) fn leave_crossings(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     drivers: &[Jet],
 ) {
@@ -138,13 +145,13 @@ pub(in crate::kinematics) fn leave_crossings(
             jet.first()
         };
         if place.abs() >= 1.0 - CROSSING_END && direction * place > 0.0 {
-            state.remove_crossing(model, index);
+            state.remove_crossing(compiled, index);
             left = true;
         }
     }
     if left {
-        state.move_to_pose(&model.system);
+        state.move_to_pose(&compiled.system);
         // The ends of a crossing are regular.
-        let _ = state.refresh(model);
+        let _ = state.refresh(compiled);
     }
 }

@@ -17,8 +17,8 @@ use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::linear::nan_or_larger;
 use crate::kinematics::newton::Limits;
 use crate::kinematics::path::Rates;
-use crate::kinematics::plan::model::Model;
-use crate::kinematics::plan::{BlockCarryover, Crossing};
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
+use crate::kinematics::plan::{BlockChoices, Crossing};
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Jet, Jet3, MotionInForce, ParameterId};
 
@@ -116,11 +116,15 @@ struct Course {
 }
 
 /// Returns the nearest change point, if the pose is next to one.
-pub(in crate::kinematics) fn near_point(model: &Model, state: &State) -> Option<NearPoint> {
+pub(in crate::kinematics) fn near_point(
+    compiled: &CompiledMechanism,
+    state: &State,
+) -> Option<NearPoint> {
     let crossings = state.pose.crossings.iter();
     let near = crossings.filter_map(|crossing| {
         let driver = crossing.driver.index();
-        let apart = (WAY / speed(model, state, crossing)).min(crossing.half_width * WITHIN / 4.0);
+        let apart =
+            (WAY / speed(compiled, state, crossing)).min(crossing.half_width * WITHIN / 4.0);
         let place = (state.pose.drivers[driver] - crossing.center) / apart;
         (place.abs() < 1.0).then(|| NearPoint {
             crossing: Arc::clone(crossing),
@@ -135,9 +139,9 @@ pub(in crate::kinematics) fn near_point(model: &Model, state: &State) -> Option<
 
 /// Returns the largest scaled rate of the block's unknowns and of its driver with the driver's
 /// value, at the change point.
-fn speed(model: &Model, state: &State, crossing: &Crossing) -> f64 {
-    let (system, size) = (&model.system, state.at.size());
-    let columns = model.plan.blocks[crossing.block].columns();
+fn speed(compiled: &CompiledMechanism, state: &State, crossing: &Crossing) -> f64 {
+    let (system, size) = (&compiled.system, state.at.size());
+    let columns = compiled.plan.blocks[crossing.block].columns();
     let rates = columns.iter().enumerate().map(|(local, &column)| {
         let [_, rate, _] = crossing.evaluate(local, crossing.center);
         (rate / system.column_scale(column, size)).abs()
@@ -148,8 +152,12 @@ fn speed(model: &Model, state: &State, crossing: &Crossing) -> f64 {
 
 impl NearPoint {
     /// Returns the error of values of this kind that have no limit.
-    pub(in crate::kinematics) fn no_limit(&self, model: &Model, of: NoLimit) -> Error {
-        let mechanism = model.system.mechanism();
+    pub(in crate::kinematics) fn no_limit(
+        &self,
+        compiled: &CompiledMechanism,
+        of: NoLimit,
+    ) -> Error {
+        let mechanism = compiled.system.mechanism();
         let driver = &mechanism.drivers[self.crossing.driver.index()];
         Error::ChangePoint {
             of,
@@ -166,11 +174,16 @@ impl NearPoint {
     /// as they are.
     pub(in crate::kinematics) fn interpolate(
         &self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         driver_rates: &[Jet],
         kind: impl Fn(usize) -> Kind,
-        mut evaluate: impl FnMut(&mut Model, &mut State, &Place<'_>, &mut Vec<f64>) -> Result<(), Error>,
+        mut evaluate: impl FnMut(
+            &mut CompiledMechanism,
+            &mut State,
+            &Place<'_>,
+            &mut Vec<f64>,
+        ) -> Result<(), Error>,
     ) -> Option<Vec<f64>> {
         let mut found: Option<Vec<Interpolated>> = None;
         for halvings in 0..=MOST_HALVINGS {
@@ -178,7 +191,7 @@ impl NearPoint {
             if nearer.place.abs() >= 1.0 {
                 break;
             }
-            let values = nearer.interpolate_at(model, state, driver_rates, &kind, &mut evaluate);
+            let values = nearer.interpolate_at(compiled, state, driver_rates, &kind, &mut evaluate);
             let Some(values) = values else { continue };
             let best = found.get_or_insert_with(|| values.clone());
             for (best, value) in best.iter_mut().zip(values) {
@@ -197,25 +210,25 @@ impl NearPoint {
     /// Returns the numbers that the places at this distance give.
     fn interpolate_at(
         &self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         driver_rates: &[Jet],
         kind: &impl Fn(usize) -> Kind,
         evaluate: &mut impl FnMut(
-            &mut Model,
+            &mut CompiledMechanism,
             &mut State,
             &Place<'_>,
             &mut Vec<f64>,
         ) -> Result<(), Error>,
     ) -> Option<Vec<Interpolated>> {
-        let course = self.course(model, state, driver_rates, 0.0)?;
-        let values = self.visit(model, state, &course, 0.0, evaluate)?;
+        let course = self.course(compiled, state, driver_rates, 0.0)?;
+        let values = self.visit(compiled, state, &course, 0.0, evaluate)?;
         let mut found = self.values_here(&values, kind);
         if self.is_at && course.times.is_some() {
             // A third derivative that changes the velocity by itself within a radian, and loads that
             // do likewise.
-            let other = self.course(model, state, driver_rates, 1.0)?;
-            let others = self.visit(model, state, &other, 1.0, evaluate)?;
+            let other = self.course(compiled, state, driver_rates, 1.0)?;
+            let others = self.visit(compiled, state, &other, 1.0, evaluate)?;
             let scales = scales(&values, kind);
             let others = self.values_here(&others, kind);
             for (index, (found, other)) in found.iter_mut().zip(others).enumerate() {
@@ -247,7 +260,7 @@ impl NearPoint {
     /// where the motion has no limit at the point, as where it turns back there.
     fn course(
         &self,
-        model: &Model,
+        compiled: &CompiledMechanism,
         state: &State,
         driver_rates: &[Jet],
         unknown: f64,
@@ -256,7 +269,7 @@ impl NearPoint {
         let parameters = &state.pose.parameters;
         // The rate of the fastest body per unit of the driver's value: a natural unit of its course.
         let speed = WAY / (self.apart * f64::from(1 << self.halvings));
-        let mechanism = model.system.mechanism();
+        let mechanism = compiled.system.mechanism();
         let drivers = mechanism.drivers.iter().zip(driver_rates);
         let drivers = drivers.enumerate().map(|(index, (driver, rates))| {
             let third = driver.motion().map_or_else(
@@ -272,7 +285,7 @@ impl NearPoint {
         });
         let drivers: Vec<Jet3> = drivers.collect();
         let own = drivers[self.crossing.driver.index()];
-        let times = self.times(model, state, own);
+        let times = self.times(compiled, state, own);
         let is_at_rest = || {
             drivers
                 .iter()
@@ -283,9 +296,9 @@ impl NearPoint {
 
     /// Returns the times at which a driver is at the places; `None` if it does not pass them
     /// steadily.
-    fn times(&self, model: &Model, state: &State, driver: Jet3) -> Option<[f64; 8]> {
+    fn times(&self, compiled: &CompiledMechanism, state: &State, driver: Jet3) -> Option<[f64; 8]> {
         let id = self.crossing.driver;
-        let along = |time: f64| along(model, state, id, driver, time);
+        let along = |time: f64| along(compiled, state, id, driver, time);
         let mut times = [0.0; 8];
         for (time, place) in times.iter_mut().zip(PLACES) {
             let way = (place - self.place) * self.apart;
@@ -311,20 +324,20 @@ impl NearPoint {
     /// Evaluates numbers at all places of a motion.
     fn visit(
         &self,
-        model: &mut Model,
+        compiled: &mut CompiledMechanism,
         state: &mut State,
         course: &Course,
         unknown: f64,
         evaluate: &mut impl FnMut(
-            &mut Model,
+            &mut CompiledMechanism,
             &mut State,
             &Place<'_>,
             &mut Vec<f64>,
         ) -> Result<(), Error>,
     ) -> Option<Vec<Vec<f64>>> {
         let home = state.pose.clone();
-        let mut choices: Vec<BlockCarryover> = Vec::new();
-        model.plan.carry_over(&mut choices);
+        let mut choices: Vec<BlockChoices> = Vec::new();
+        compiled.plan.copy_choices(&mut choices);
         let own = self.crossing.driver.index();
         let mut rates = Rates::new(home.q.len());
         let mut driver_rates = vec![Jet::constant(0.0); home.drivers.len()];
@@ -332,38 +345,38 @@ impl NearPoint {
         for (k, place) in PLACES.into_iter().enumerate() {
             let time = course.times.map_or(0.0, |times| times[k]);
             for (index, driver) in course.drivers.iter().enumerate() {
-                let rates = along(model, state, DriverId(index), *driver, time);
+                let rates = along(compiled, state, DriverId(index), *driver, time);
                 let [value, first, second] = rates;
                 state.pose.drivers[index] = value;
                 driver_rates[index] = Jet::new(value, [first, second]);
             }
             state.pose.drivers[own] = self.crossing.center + place * self.apart;
             state.pose.time = home.time + time;
-            let mut values_there = |model: &mut Model, state: &mut State| {
-                move_there(model, state)?;
+            let mut values_there = |compiled: &mut CompiledMechanism, state: &mut State| {
+                move_there(compiled, state)?;
                 let jet = |driver: DriverId| driver_rates[driver.index()];
-                state.solve_rates(model, jet, &mut rates).ok()?;
+                state.solve_rates(compiled, jet, &mut rates).ok()?;
                 let place = Place {
                     rates: &rates,
                     driver_rates: &driver_rates,
                     drift: unknown * (place - self.place) * WAY,
                 };
                 let mut values = Vec::new();
-                evaluate(model, state, &place, &mut values).ok()?;
+                evaluate(compiled, state, &place, &mut values).ok()?;
                 Some(values)
             };
-            match values_there(model, state) {
+            match values_there(compiled, state) {
                 Some(values) => all.push(values),
                 None => break,
             }
             state.pose.copy_place(&home);
-            state.move_to_pose(&model.system);
+            state.move_to_pose(&compiled.system);
         }
         state.pose.copy_place(&home);
-        state.move_to_pose(&model.system);
-        let fits = model.plan.take_over(&choices);
+        state.move_to_pose(&compiled.system);
+        let fits = compiled.plan.take_choices(&choices);
         debug_assert!(fits, "they are of this plan");
-        state.refresh(model).ok()?;
+        state.refresh(compiled).ok()?;
         (all.len() == PLACES.len()).then_some(all)
     }
 
@@ -397,21 +410,27 @@ impl NearPoint {
 }
 
 /// Moves the bodies to the drivers' values of the pose, and makes this the pose.
-fn move_there(model: &mut Model, state: &mut State) -> Option<()> {
-    let Model { system, plan, .. } = &mut *model;
+fn move_there(compiled: &mut CompiledMechanism, state: &mut State) -> Option<()> {
+    let CompiledMechanism { system, plan, .. } = &mut *compiled;
     let mut blocks = state.block_state(system);
     plan.close(&mut blocks, Limits::STEP).ok()?;
     state.accept_bodies();
     state.invalidate();
-    state.refresh(model).ok()
+    state.refresh(compiled).ok()
 }
 
 /// Returns value and rates of a driver after a time: those of its prescribed motion, or of the Taylor
 /// polynomial of an input. Along a Taylor polynomial of a prescribed motion a limit could have a small
 /// pole.
-fn along(model: &Model, state: &State, id: DriverId, driver: Jet3, time: f64) -> [f64; 3] {
+fn along(
+    compiled: &CompiledMechanism,
+    state: &State,
+    id: DriverId,
+    driver: Jet3,
+    time: f64,
+) -> [f64; 3] {
     if time != 0.0
-        && model.system.mechanism().drivers[id.index()]
+        && compiled.system.mechanism().drivers[id.index()]
             .motion()
             .is_some()
     {

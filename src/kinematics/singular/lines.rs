@@ -12,8 +12,8 @@ use super::near::{FREE, LARGEST_BLOCK};
 use crate::kinematics::alignment::{Alignment, Member, Relation};
 use crate::kinematics::constraint::Gradient;
 use crate::kinematics::constraint::configuration::{Configuration, perp};
-use crate::kinematics::origin::Element;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::origin::Origin;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::system::System;
 use crate::mechanism::{BodyId, Coordinate, CoordinateKind, DriverId, JointKind, MarkerId};
 
@@ -32,7 +32,7 @@ struct Line {
     of: Member,
 }
 
-/// The way in which an element connects two groups of bodies.
+/// The way in which an origin connects two groups of bodies.
 #[derive(Clone, Copy, Debug)]
 enum Way {
     Pin(Vector2<f64>),
@@ -43,7 +43,7 @@ enum Way {
 /// A connection of two groups of bodies.
 #[derive(Clone, Copy, Debug)]
 struct Connection {
-    element: Element,
+    origin: Origin,
     way: Way,
     bodies: [usize; 2],
     /// The groups, by one of their bodies; the last is that of all bodies at rest.
@@ -82,12 +82,12 @@ struct Moving<'a> {
 /// the null vector for these unknowns, scaled, the largest of them one. What it returns holds to
 /// `tolerance`; without any such lines the members are all that moves.
 pub(super) fn find_lines(
-    model: &Model,
+    compiled: &CompiledMechanism,
     at: &Configuration,
     free: (&[usize], &[f64]),
     tolerance: f64,
 ) -> Alignment {
-    let moving = Moving::new(model, at, free, tolerance);
+    let moving = Moving::new(compiled, at, free, tolerance);
     let connections = moving.connections();
     let groups = moving.groups.iter().enumerate();
     let groups: Vec<usize> = groups
@@ -104,29 +104,29 @@ pub(super) fn find_lines(
 
 /// Returns all that a null vector moves.
 pub(super) fn all_that_moves(
-    model: &Model,
+    compiled: &CompiledMechanism,
     at: &Configuration,
     free: (&[usize], &[f64]),
 ) -> Alignment {
-    let moving = Moving::new(model, at, free, 0.0);
+    let moving = Moving::new(compiled, at, free, 0.0);
     moving.free(free, &moving.connections())
 }
 
 impl<'a> Moving<'a> {
     fn new(
-        model: &'a Model,
+        compiled: &'a CompiledMechanism,
         at: &'a Configuration,
         (columns, free): (&[usize], &[f64]),
         tolerance: f64,
     ) -> Self {
-        let system = &model.system;
+        let system = &compiled.system;
         let bodies = system.mechanism().bodies.len();
         let size = at.size();
         let mut motion = vec![0.0; system.unknowns()];
         for (&column, value) in columns.iter().zip(free) {
             motion[column] = value * system.column_scale(column, size);
         }
-        let acts = follow(model, at, columns, &mut motion);
+        let acts = follow(compiled, at, columns, &mut motion);
         let mut twists = vec![[0.0; 3]; bodies + 1];
         for (twist, motion) in twists.iter_mut().zip(motion.chunks(3)).take(bodies) {
             *twist = [motion[0] / size, motion[1] / size, motion[2]];
@@ -189,24 +189,24 @@ impl<'a> Moving<'a> {
     fn connections(&self) -> Vec<Connection> {
         let mechanism = self.system.mechanism();
         let joints = mechanism.joints.iter().enumerate().map(|(index, joint)| {
-            let element = Element::Joint(index);
+            let origin = Origin::Joint(index);
             let (from, to) = (joint.from, joint.to);
             let way = match joint.kind {
                 JointKind::Revolute => Way::Pin(self.at.marker(to).point),
-                JointKind::Link { .. } => self.bar(element, from, to),
+                JointKind::Link { .. } => self.bar(origin, from, to),
                 JointKind::Slot
                 | JointKind::Translational
                 | JointKind::RevoluteTranslational { .. } => Way::Line(Line {
                     point: self.at.marker(to).point,
                     direction: perp(self.at.marker(from).axis),
-                    of: Member::Element(element),
+                    of: Member::Origin(origin),
                 }),
-                JointKind::Cam { .. } => self.contact(element, to),
+                JointKind::Cam { .. } => self.contact(origin, to),
                 _ => Way::Other,
             };
-            (element, way, from, to)
+            (origin, way, from, to)
         });
-        let of_coordinate = |element: Element, coordinate: &Coordinate| {
+        let of_coordinate = |origin: Origin, coordinate: &Coordinate| {
             let Coordinate {
                 kind,
                 from,
@@ -216,7 +216,7 @@ impl<'a> Moving<'a> {
             let axis = self.at.marker(axes).axis;
             let along = |direction| {
                 let point = self.at.marker(to).point;
-                let of = Member::Element(element);
+                let of = Member::Origin(origin);
                 Way::Line(Line {
                     point,
                     direction,
@@ -225,25 +225,25 @@ impl<'a> Moving<'a> {
             };
             let is_of_two = self.body(axes) == self.body(from);
             let way = match kind {
-                CoordinateKind::Distance => self.bar(element, from, to),
+                CoordinateKind::Distance => self.bar(origin, from, to),
                 CoordinateKind::X if is_of_two => along(axis),
                 CoordinateKind::Y if is_of_two => along(perp(axis)),
                 _ => Way::Other,
             };
-            (element, way, from, to)
+            (origin, way, from, to)
         };
         let constraints = mechanism.constraints.iter().enumerate();
         let constraints =
-            constraints.map(|(k, held)| of_coordinate(Element::Constraint(k), &held.coordinate));
+            constraints.map(|(k, held)| of_coordinate(Origin::Constraint(k), &held.coordinate));
         let drivers = mechanism.drivers.iter().enumerate();
         let drivers = drivers
-            .map(|(k, driver)| of_coordinate(Element::Driver(DriverId(k)), &driver.coordinate));
+            .map(|(k, driver)| of_coordinate(Origin::Driver(DriverId(k)), &driver.coordinate));
         let all = joints.chain(constraints).chain(drivers);
-        let all = all.filter(|(element, ..)| self.transmits(*element));
-        let all = all.map(|(element, way, from, to)| {
+        let all = all.filter(|(origin, ..)| self.transmits(*origin));
+        let all = all.map(|(origin, way, from, to)| {
             let bodies = [from, to].map(|marker| self.body(marker));
             Connection {
-                element,
+                origin,
                 way,
                 bodies,
                 groups: bodies.map(|body| self.groups[body]),
@@ -274,22 +274,22 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// Returns whether rows of an element belong to the block or to those that it reads.
-    fn transmits(&self, element: Element) -> bool {
+    /// Returns whether rows of an origin belong to the block or to those that it reads.
+    fn transmits(&self, origin: Origin) -> bool {
         let mut rows = self.system.equations().iter().zip(&self.acts);
-        rows.any(|(row, acts)| *acts && row.element == element)
+        rows.any(|(row, acts)| *acts && row.origin == origin)
     }
 
     /// Returns the line of a massless link or a cylinder.
-    fn bar(&self, element: Element, from: MarkerId, to: MarkerId) -> Way {
+    fn bar(&self, origin: Origin, from: MarkerId, to: MarkerId) -> Way {
         let [from, to] = [from, to].map(|marker| self.at.marker(marker).point);
-        line_between(from, to, Member::Element(element)).map_or(Way::Other, Way::Line)
+        line_between(from, to, Member::Origin(origin)).map_or(Way::Other, Way::Line)
     }
 
     /// Returns the normal of a contact on a cam: the line of the force of its last row.
-    fn contact(&self, element: Element, follower: MarkerId) -> Way {
+    fn contact(&self, origin: Origin, follower: MarkerId) -> Way {
         let rows = self.system.equations().iter();
-        let Some(row) = rows.rev().find(|row| row.element == element) else {
+        let Some(row) = rows.rev().find(|row| row.origin == origin) else {
             return Way::Other;
         };
         let mut gradient = Gradient::new();
@@ -304,7 +304,7 @@ impl<'a> Moving<'a> {
             (square > 0.0).then(|| Line {
                 point: marker - perp(force) * (torque / square),
                 direction: force / square.sqrt(),
-                of: Member::Element(element),
+                of: Member::Origin(origin),
             })
         });
         lines.next().map_or(Way::Other, Way::Line)
@@ -322,7 +322,7 @@ impl<'a> Moving<'a> {
             if next == self.rest() {
                 return Some((*connection, connection.way));
             }
-            let mut others = of_group(next).filter(|own| own.element != connection.element);
+            let mut others = of_group(next).filter(|own| own.origin != connection.origin);
             let (behind, more) = (others.next()?, others.next());
             if more.is_some() || behind.other(next) != self.rest() {
                 return None;
@@ -366,7 +366,7 @@ impl<'a> Moving<'a> {
         if members.is_empty() {
             return None;
         }
-        members.push(Member::Element(pin.element));
+        members.push(Member::Origin(pin.origin));
         Some(Alignment {
             relation: Relation::ThroughPin,
             members,
@@ -409,7 +409,7 @@ impl<'a> Moving<'a> {
     fn ordered(&self, mut members: Vec<Member>) -> Vec<Member> {
         members.sort_by_key(|member| match member {
             Member::Body(body) => body.index(),
-            Member::Element(_) => self.twists.len(),
+            Member::Origin(_) => self.twists.len(),
         });
         members
     }
@@ -423,7 +423,7 @@ impl<'a> Moving<'a> {
         unknowns.sort_unstable();
         let of_unknown = |column: usize| match column / 3 {
             body if body < bodies => Member::Body(BodyId(body)),
-            _ => Member::Element(self.system.element_of(column)),
+            _ => Member::Origin(self.system.origin_of(column)),
         };
         let mut members: Vec<_> = unknowns.into_iter().map(of_unknown).collect();
         // The unknowns of a body are next to each other.
@@ -462,14 +462,19 @@ fn line_between(from: Vector2<f64>, to: Vector2<f64>, of: Member) -> Option<Line
 
 /// Extends the motion of a block's unknowns to those of blocks that read it. Returns for each row
 /// whether it belongs to the block or to those that it reads, or is set aside.
-fn follow(model: &Model, at: &Configuration, columns: &[usize], motion: &mut [f64]) -> Vec<bool> {
-    let system = &model.system;
+fn follow(
+    compiled: &CompiledMechanism,
+    at: &Configuration,
+    columns: &[usize],
+    motion: &mut [f64],
+) -> Vec<bool> {
+    let system = &compiled.system;
     let mut acts = vec![false; system.equations().len()];
     let mut is_known = vec![false; motion.len()];
-    for &row in &model.redundant.now {
+    for &row in &compiled.redundant.now {
         acts[row] = true;
     }
-    for block in model.blocks_behind(columns) {
+    for block in compiled.blocks_behind(columns) {
         block.rows.iter().for_each(|&row| acts[row] = true);
         block
             .columns
@@ -477,7 +482,7 @@ fn follow(model: &Model, at: &Configuration, columns: &[usize], motion: &mut [f6
             .for_each(|&column| is_known[column] = true);
     }
     let size = at.size();
-    for block in model.structure.blocks() {
+    for block in compiled.structure.blocks() {
         let order = block.columns.len();
         if is_known[block.columns[0]] || order > LARGEST_BLOCK {
             continue;

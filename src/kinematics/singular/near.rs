@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 
 /// Most unknowns of a block whose singular positions are located, by dense matrices.
@@ -13,19 +13,23 @@ pub(in crate::kinematics) const NEAR: f64 = 0.05;
 pub(super) const FREE: f64 = 1e-3;
 
 /// Returns the blocks near a singular position that are small enough; all are factorised.
-pub(super) fn near_singular(model: &Model) -> Vec<usize> {
-    let blocks = model.plan.blocks.iter().enumerate();
+pub(super) fn near_singular(compiled: &CompiledMechanism) -> Vec<usize> {
+    let blocks = compiled.plan.blocks.iter().enumerate();
     let near = blocks
         .filter(|(_, block)| block.regularity() < NEAR && block.columns().len() <= LARGEST_BLOCK);
     near.map(|(index, _)| index).collect()
 }
 
 /// Returns the Jacobian of a block's rows in its own unknowns at the pose, scaled.
-pub(super) fn block_jacobian(model: &Model, state: &State, block: usize) -> DMatrix<f64> {
-    let block = &model.plan.blocks[block];
+pub(super) fn block_jacobian(
+    compiled: &CompiledMechanism,
+    state: &State,
+    block: usize,
+) -> DMatrix<f64> {
+    let block = &compiled.plan.blocks[block];
     let columns = block.columns();
     let place = |column: usize| columns.iter().position(|&own| own == column);
-    let system = &model.system;
+    let system = &compiled.system;
     let (_, jacobian) = system.dense_rows(block.rows(), columns.len(), place, state.values());
     jacobian
 }

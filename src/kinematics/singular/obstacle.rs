@@ -14,7 +14,7 @@ use super::reduced::{ReducedEquation, ReducedPoint};
 use super::upstream::{Line, Workspace};
 use crate::kinematics::alignment::Alignment;
 use crate::kinematics::path::Path;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::redundancy::{are_rows_fit, change_rows};
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Jet};
@@ -108,13 +108,13 @@ impl FruitlessSearches {
 ///
 /// A position that cannot be passed, right ahead.
 pub(in crate::kinematics) fn look_ahead(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     drivers: &[Jet],
     (path, s): (&Path, f64),
     fruitless: &mut FruitlessSearches,
 ) -> Result<Option<DriverLimit>, Box<SingularPoint>> {
-    let ahead = enter_near_crossings(model, state, Some(drivers), fruitless);
+    let ahead = enter_near_crossings(compiled, state, Some(drivers), fruitless);
     let Some(Ahead {
         block,
         limit,
@@ -125,8 +125,8 @@ pub(in crate::kinematics) fn look_ahead(
     };
     if is_next {
         let mut work = Workspace::new(state);
-        let point = singular_point(model, state, (path, s), block, &mut work);
-        return_to_regular_pose(model, state);
+        let point = singular_point(compiled, state, (path, s), block, &mut work);
+        return_to_regular_pose(compiled, state);
         if let Some(point) = point {
             return Err(Box::new(point));
         }
@@ -135,9 +135,9 @@ pub(in crate::kinematics) fn look_ahead(
 }
 
 /// Adds the crossings of change points near the pose, at which all blocks are factorised.
-pub(in crate::kinematics) fn settle(model: &mut Model, state: &mut State) {
+pub(in crate::kinematics) fn settle(compiled: &mut CompiledMechanism, state: &mut State) {
     if state.regularity < NEAR {
-        enter_near_crossings(model, state, None, &mut FruitlessSearches::default());
+        enter_near_crossings(compiled, state, None, &mut FruitlessSearches::default());
     }
 }
 
@@ -155,38 +155,38 @@ struct Ahead {
 /// A mechanism that moves takes fitter rows first, if there are any: the rows in use depend on each
 /// other in more places than all rows do, and rounding decides how wide a crossing there may be.
 fn enter_near_crossings(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     drivers: Option<&[Jet]>,
     fruitless: &mut FruitlessSearches,
 ) -> Option<Ahead> {
-    let mut near = near_singular(model);
-    near.retain(|&block| !fruitless.contain(block, model.plan.blocks[block].regularity()));
+    let mut near = near_singular(compiled);
+    near.retain(|&block| !fruitless.contain(block, compiled.plan.blocks[block].regularity()));
     if near.is_empty() {
         return None;
     }
     match drivers {
-        Some(_) if change_rows(model, state) => {
+        Some(_) if change_rows(compiled, state) => {
             // Blocks are others now. At one pose rows change once at the most.
             fruitless.clear();
-            return_to_regular_pose(model, state);
-            return enter_near_crossings(model, state, drivers, fruitless);
+            return_to_regular_pose(compiled, state);
+            return enter_near_crossings(compiled, state, drivers, fruitless);
         }
-        None if !are_rows_fit(model, state) => return None,
+        None if !are_rows_fit(compiled, state) => return None,
         _ => {}
     }
     let mut ahead = None;
     let mut work = Workspace::new(state);
     for &block in &near {
-        let Some(driver) = model.only_driver(block) else {
+        let Some(driver) = compiled.only_driver(block) else {
             continue;
         };
-        let regularity = model.plan.blocks[block].regularity();
+        let regularity = compiled.plan.blocks[block].regularity();
         fruitless.note(block, regularity);
         let value = state.pose.drivers[driver.index()];
         let direction = drivers.map_or(0.0, |drivers| drivers[driver.index()].first());
         let line = Line::Driver(driver);
-        let equation = ReducedEquation::new(model, state, block, line, value, &mut work);
+        let equation = ReducedEquation::new(compiled, state, block, line, value, &mut work);
         let Some((mut equation, start)) = equation else {
             continue;
         };
@@ -219,35 +219,35 @@ fn enter_near_crossings(
         };
         let crossing = crossing_of(&mut equation, finding, block, driver);
         if let (Some(mut crossing), Some(q)) = (crossing, there) {
-            let columns = model.plan.blocks[block].columns();
+            let columns = compiled.plan.blocks[block].columns();
             let free = (columns, &crossing.free[..]);
-            crossing.alignment = alignment_at(model, state, &q, free, LOCATED);
-            if !enter_crossing(model, state, crossing) {
+            crossing.alignment = alignment_at(compiled, state, &q, free, LOCATED);
+            if !enter_crossing(compiled, state, crossing) {
                 fruitless.note(block, regularity);
             }
         }
     }
-    return_to_regular_pose(model, state);
+    return_to_regular_pose(compiled, state);
     ahead
 }
 
 /// Brings the plan back to the pose, after blocks have been elsewhere.
-fn return_to_regular_pose(model: &mut Model, state: &mut State) {
-    state.move_to_pose(&model.system);
+fn return_to_regular_pose(compiled: &mut CompiledMechanism, state: &mut State) {
+    state.move_to_pose(&compiled.system);
     // The pose was regular when it was reached.
-    let _ = state.refresh(model);
+    let _ = state.refresh(compiled);
 }
 
 /// Returns the position that stops the motion along a path, at whose `s` the mechanism is; `None`
 /// if no singular position was found: the motion jumps, or a block is too large.
 pub(in crate::kinematics) fn find_end(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     path: &Path,
     s: f64,
 ) -> Option<Box<SingularPoint>> {
-    let mut near = near_singular(model);
-    let regularity = |block: usize| model.plan.blocks[block].regularity();
+    let mut near = near_singular(compiled);
+    let regularity = |block: usize| compiled.plan.blocks[block].regularity();
     // A block that reads one that runs ever faster is as near to singular as that one.
     let least = near.iter().map(|&block| regularity(block));
     let least = least.fold(f64::INFINITY, f64::min);
@@ -256,7 +256,7 @@ pub(in crate::kinematics) fn find_end(
     let mut located: Vec<(usize, f64)> = Vec::new();
     for &block in &near {
         let line = Line::Path(path);
-        let equation = ReducedEquation::new(model, state, block, line, s, &mut work);
+        let equation = ReducedEquation::new(compiled, state, block, line, s, &mut work);
         let place = equation.and_then(|(mut equation, start)| place_ahead(&mut equation, start));
         located.extend(place.map(|(_, point)| (block, point.tau - s)));
     }
@@ -266,19 +266,19 @@ pub(in crate::kinematics) fn find_end(
     let farthest = nearest + ALIKE * nearest.abs() + AT_ONE_PLACE;
     let first = located.iter().find(|(_, off)| *off <= farthest);
     let found =
-        first.and_then(|(block, _)| singular_point(model, state, (path, s), *block, &mut work));
-    return_to_regular_pose(model, state);
+        first.and_then(|(block, _)| singular_point(compiled, state, (path, s), *block, &mut work));
+    return_to_regular_pose(compiled, state);
     let found = found.or_else(|| {
         near.iter()
-            .find_map(|&block| loss_of_ranks(model, state, s, block))
+            .find_map(|&block| loss_of_ranks(compiled, state, s, block))
     });
     if found.is_some() {
         return found.map(Box::new);
     }
     let fold = near
         .iter()
-        .find_map(|&block| located_point(model, state, (path, s), block, &mut work, fold_ahead));
-    return_to_regular_pose(model, state);
+        .find_map(|&block| located_point(compiled, state, (path, s), block, &mut work, fold_ahead));
+    return_to_regular_pose(compiled, state);
     fold.map(Box::new)
 }
 
@@ -308,18 +308,18 @@ fn place_ahead(equation: &mut ReducedEquation<'_>, start: ReducedPoint) -> Optio
 
 /// Returns the singular position of a block ahead on a path.
 fn singular_point(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &State,
     (path, s): (&Path, f64),
     block: usize,
     work: &mut Workspace,
 ) -> Option<SingularPoint> {
-    located_point(model, state, (path, s), block, work, place_ahead)
+    located_point(compiled, state, (path, s), block, work, place_ahead)
 }
 
 /// Returns the singular position of a block ahead on a path that `locate` finds.
 fn located_point(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &State,
     (path, s): (&Path, f64),
     block: usize,
@@ -327,13 +327,13 @@ fn located_point(
     locate: fn(&mut ReducedEquation<'_>, ReducedPoint) -> Option<Located>,
 ) -> Option<SingularPoint> {
     let line = Line::Path(path);
-    let (mut equation, start) = ReducedEquation::new(model, state, block, line, s, work)?;
+    let (mut equation, start) = ReducedEquation::new(compiled, state, block, line, s, work)?;
     let (kind, point) = locate(&mut equation, start)?;
     let (q, drivers) = (equation.pose(&point), equation.drivers().to_vec());
     let place = (kind, point.tau);
     let free = &point.tangents[0];
     Some(point_at(
-        model,
+        compiled,
         state,
         block,
         place,
@@ -345,8 +345,13 @@ fn located_point(
 
 /// Returns a singular position of more than one rank, at which the search for others fails, as the
 /// pose at which the mechanism has stopped in front of it.
-fn loss_of_ranks(model: &Model, state: &State, s: f64, block: usize) -> Option<SingularPoint> {
-    let svd = block_jacobian(model, state, block).svd(false, true);
+fn loss_of_ranks(
+    compiled: &CompiledMechanism,
+    state: &State,
+    s: f64,
+    block: usize,
+) -> Option<SingularPoint> {
+    let svd = block_jacobian(compiled, state, block).svd(false, true);
     let values = &svd.singular_values;
     // In descending order.
     let last_but_one = values.len().checked_sub(2)?;
@@ -356,12 +361,12 @@ fn loss_of_ranks(model: &Model, state: &State, s: f64, block: usize) -> Option<S
     let free = svd.v_t?.row(last_but_one + 1).transpose();
     let place = (SingularKind::HigherRank, s);
     let pose = (state.pose.q.clone(), state.pose.drivers.clone());
-    Some(point_at(model, state, block, place, pose, &free, LOST))
+    Some(point_at(compiled, state, block, place, pose, &free, LOST))
 }
 
 /// Returns a singular point with a null vector of a block; its lines meet to `tolerance`.
 fn point_at(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
     block: usize,
     (kind, s): (SingularKind, f64),
@@ -369,14 +374,14 @@ fn point_at(
     free: &DVector<f64>,
     tolerance: f64,
 ) -> SingularPoint {
-    let columns = model.plan.blocks[block].columns();
+    let columns = compiled.plan.blocks[block].columns();
     let free = free / free[free.icamax()];
     let mut over_all = vec![0.0; state.pose.q.len()];
     for (&column, value) in columns.iter().zip(free.iter()) {
         over_all[column] = *value;
     }
-    let alignment = alignment_at(model, state, &q, (columns, free.as_slice()), tolerance);
-    let mechanism = model.system.mechanism();
+    let alignment = alignment_at(compiled, state, &q, (columns, free.as_slice()), tolerance);
+    let mechanism = compiled.system.mechanism();
     SingularPoint {
         kind,
         s,
@@ -390,15 +395,15 @@ fn point_at(
 
 /// Returns the lines that meet at q, for a null vector in these unknowns.
 fn alignment_at(
-    model: &Model,
+    compiled: &CompiledMechanism,
     state: &State,
     q: &[f64],
     free: (&[usize], &[f64]),
     tolerance: f64,
 ) -> Alignment {
     let mut at = state.at.clone();
-    at.set_pose(model.system.mechanism(), q);
-    find_lines(model, &at, free, tolerance)
+    at.set_pose(compiled.system.mechanism(), q);
+    find_lines(compiled, &at, free, tolerance)
 }
 
 #[cfg(test)]

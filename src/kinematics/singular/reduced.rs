@@ -17,7 +17,7 @@ use nalgebra::DVector;
 
 use super::upstream::{Line, Upstream, Workspace};
 use crate::kinematics::linear::{DenseLu, Factors, nan_or_larger};
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockPlan, BlockSolver};
 use crate::kinematics::state::State;
 use crate::mechanism::Jet;
@@ -94,19 +94,19 @@ impl<'a> ReducedEquation<'a> {
     /// Reduces the equations of a block from the pose, which is at `start` of the line. Returns them
     /// with their point there; `None` where they have no bordered solution.
     pub(super) fn new(
-        model: &'a mut Model,
+        compiled: &'a mut CompiledMechanism,
         state: &'a State,
         block: usize,
         line: Line<'a>,
         start: f64,
         work: &'a mut Workspace,
     ) -> Option<(Self, ReducedPoint)> {
-        let Model {
+        let CompiledMechanism {
             system,
             plan,
             redundant,
             ..
-        } = model;
+        } = compiled;
         let system = &*system;
         let BlockPlan { blocks, reads, .. } = plan;
         let (own, before) = blocks[..=block].split_last_mut()?;

@@ -7,7 +7,7 @@ use crate::kinematics::assembly::turns::choose_turns;
 use crate::kinematics::error::Error;
 use crate::kinematics::newton::SINGULAR;
 use crate::kinematics::path::Path;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::redundancy::{assemble_on_all, choose_rows};
 use crate::kinematics::singular::settle;
 use crate::kinematics::state::State;
@@ -27,15 +27,15 @@ pub struct Assembly {
 ///
 /// Those of [`Solver::assemble`](crate::kinematics::Solver::assemble).
 pub(in crate::kinematics) fn assemble(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     path: &Path,
 ) -> Result<Assembly, Error> {
-    match assemble_rows(model, state, path, !model.redundant.is_empty()) {
+    match assemble_rows(compiled, state, path, !compiled.redundant.is_empty()) {
         // The rows may be redundant for these numbers.
         Err(Error::Singular { .. }) => {
-            choose_rows(model, state, path)?;
-            assemble_rows(model, state, path, true)
+            choose_rows(compiled, state, path)?;
+            assemble_rows(compiled, state, path, true)
         }
         assembled => assembled,
     }
@@ -43,36 +43,36 @@ pub(in crate::kinematics) fn assemble(
 
 /// Assembles with the rows chosen so far; `on_all` closes the redundant ones, too.
 fn assemble_rows(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     path: &Path,
     on_all: bool,
 ) -> Result<Assembly, Error> {
-    let estimate = go_to_estimate(model, state, path)?;
+    let estimate = go_to_estimate(compiled, state, path)?;
     let iterations = if on_all {
-        assemble_on_all(model, state, &estimate)?
+        assemble_on_all(compiled, state, &estimate)?
     } else {
-        match search(model, state, &estimate) {
+        match search(compiled, state, &estimate) {
             Ok(iterations) => iterations,
-            Err(failure) => search_at_once(model, state, failure, &estimate)?,
+            Err(failure) => search_at_once(compiled, state, failure, &estimate)?,
         }
     };
-    choose_turns(&model.system, state, &estimate);
+    choose_turns(&compiled.system, state, &estimate);
     // The search may have chosen pivots, at poses that belong to no motion.
-    model
+    compiled
         .plan
-        .reset_pivots(&model.system, &state.at, &state.targets);
-    state.refresh(model)?;
-    let rcond = model.plan.rcond();
+        .reset_pivots(&compiled.system, &state.at, &state.targets);
+    state.refresh(compiled)?;
+    let rcond = compiled.plan.rcond();
     if rcond < SINGULAR {
         return Err(Error::Singular {
             rcond,
             bodies: Vec::new(),
         });
     }
-    settle(model, state);
+    settle(compiled, state);
     Ok(Assembly {
         iterations,
-        distance: distance(&model.system, state, &estimate),
+        distance: distance(&compiled.system, state, &estimate),
     })
 }

@@ -13,7 +13,7 @@ use crate::kinematics::continuation::{Blocked, PathTracker, Progress, most_subst
 use crate::kinematics::error::Error;
 use crate::kinematics::path::{Curve, Path};
 use crate::kinematics::plan::Crossing;
-use crate::kinematics::plan::model::Model;
+use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::{Pose, State};
 use crate::kinematics::system::Values;
 use crate::mechanism::{DriverId, Parameter, Unit, shown};
@@ -36,18 +36,18 @@ const MOST_TURNS: i64 = 1 << 50;
 /// [`Error::NoWay`] if no continuous motion was found, and those of [`assemble`] if the mechanism does
 /// not close at the end.
 pub(super) fn start(
-    model: &mut Model,
+    compiled: &mut CompiledMechanism,
     state: &mut State,
     tracker: &mut PathTracker,
     home: &Pose,
     path: &Path,
 ) -> Result<Progress, Error> {
-    let goal = path.drivers_at_end(model.system.mechanism());
-    let each = whole_turns(model, home, &goal);
+    let goal = path.drivers_at_end(compiled.system.mechanism());
+    let each = whole_turns(compiled, home, &goal);
     let mut ways = vec![each.clone()];
     ways.extend(common_turns(&each));
     let mut journey = Journey {
-        model,
+        compiled,
         state,
         tracker,
         home,
@@ -68,12 +68,12 @@ pub(super) fn start(
     let may_follow = path.duration >= 0.0 || !path.has_motions();
     let turns = each.iter().any(|turns| *turns != 0);
     if follows || turns && may_follow {
-        state.restore(model, home);
-        if let Ok(progress) = tracker.track(model, state, path, false) {
+        state.restore(compiled, home);
+        if let Ok(progress) = tracker.track(compiled, state, path, false) {
             return Ok(progress);
         }
     }
-    match assemble(model, state, path) {
+    match assemble(compiled, state, path) {
         // Near there the rows may have another rank, which says nothing of the way.
         Ok(_) | Err(Error::Structure { .. }) => Err(stop.expect("the first way was tried")),
         Err(unclosed) => Err(unclosed),
@@ -82,8 +82,8 @@ pub(super) fn start(
 
 /// Returns the whole turns from a pose to the values `goal` of the drivers; those of lengths are
 /// zero.
-fn whole_turns(model: &Model, home: &Pose, goal: &[f64]) -> Vec<i64> {
-    let drivers = model.system.mechanism().drivers.iter();
+fn whole_turns(compiled: &CompiledMechanism, home: &Pose, goal: &[f64]) -> Vec<i64> {
+    let drivers = compiled.system.mechanism().drivers.iter();
     let values = home.drivers.iter().zip(goal);
     let turns = drivers.zip(values).map(|(driver, (from, to))| {
         // A saturating cast, towards zero; zero for a value that is not a number.
@@ -113,7 +113,7 @@ fn common_turns(each: &[i64]) -> Option<Vec<i64>> {
 
 /// A motion from a pose to the end of a path.
 struct Journey<'a> {
-    model: &'a mut Model,
+    compiled: &'a mut CompiledMechanism,
     state: &'a mut State,
     tracker: &'a mut PathTracker,
     home: &'a Pose,
@@ -133,7 +133,7 @@ impl Journey<'_> {
     ///
     /// The cause of a stop; the pose is the last one reached.
     fn go(&mut self, turns: &[i64]) -> Result<(), Blocked> {
-        self.state.restore(self.model, self.home);
+        self.state.restore(self.compiled, self.home);
         self.progress = Progress::default();
         self.crossed.clear();
         let mut missing = turns.to_vec();
@@ -169,7 +169,7 @@ impl Journey<'_> {
             to: self.path.to.clone(),
             curves: values.map(|(to, from)| Curve::held(*to, *from)).collect(),
         };
-        let tracked = self.tracker.track(self.model, self.state, &path, false);
+        let tracked = self.tracker.track(self.compiled, self.state, &path, false);
         let progress = match &tracked {
             Ok(progress) => progress,
             Err(blocked) => &blocked.progress,
@@ -191,7 +191,7 @@ impl Journey<'_> {
                 .map(|(from, is)| if *is { from + turned } else { *from })
                 .collect()
         };
-        let most = most_substeps(self.model.plan.work(), None);
+        let most = most_substeps(self.compiled.plan.work(), None);
         let (mut before, mut begun) = (self.state.pose.clone(), 0);
         let (mut done, mut left, mut stride) = (0, turns.abs(), 1_i64);
         let mut repeated = None;
@@ -236,7 +236,7 @@ impl Journey<'_> {
     /// then the same motion leads on from there.
     fn repeat(&self, before: &Pose, times: i64, there: &[f64]) -> Option<Vec<f64>> {
         let Self {
-            model: Model { system, .. },
+            compiled: CompiledMechanism { system, .. },
             state,
             ..
         } = self;
@@ -269,12 +269,12 @@ impl Journey<'_> {
         let crossings = self.state.pose.crossings.iter().zip(&before.crossings);
         self.state.pose.crossings.len() == before.crossings.len()
             && crossings.into_iter().all(|(now, then)| {
-                let columns = self.model.plan.blocks[now.block].columns();
+                let columns = self.compiled.plan.blocks[now.block].columns();
                 let mut unknowns = columns.iter().enumerate();
                 now.block == then.block
                     && unknowns.all(|(local, column)| {
                         let [now, then] = [now, then].map(|c| c.evaluate(local, c.center)[1]);
-                        let scale = self.model.system.column_scale(*column, size);
+                        let scale = self.compiled.system.column_scale(*column, size);
                         (now - then).abs() <= SAME_VELOCITY * (scale + now.abs())
                     })
             })
@@ -286,7 +286,7 @@ impl Journey<'_> {
         pose.q = turned(&pose.q, turns);
         for crossing in &mut pose.crossings {
             let driver = crossing.driver.index();
-            let columns = self.model.plan.blocks[crossing.block].columns();
+            let columns = self.compiled.plan.blocks[crossing.block].columns();
             let turned = crossing.turned(
                 there[driver] - pose.drivers[driver],
                 columns.iter().map(|column| TAU * turns[*column]),
@@ -294,12 +294,12 @@ impl Journey<'_> {
             *crossing = Arc::new(turned);
         }
         pose.drivers.copy_from_slice(there);
-        self.state.restore(self.model, &pose);
+        self.state.restore(self.compiled, &pose);
     }
 
     /// Describes a stop at the pose.
     fn describe(&self, blocked: &Blocked) -> Error {
-        let mechanism = self.model.system.mechanism();
+        let mechanism = self.compiled.system.mechanism();
         let pose = &self.state.pose;
         let drivers = (0..).map(DriverId).zip(&mechanism.drivers);
         let ends = self.home.drivers.iter().zip(&self.goal);

@@ -1,6 +1,6 @@
 //! The equations of each kind of joint.
 
-use crate::kinematics::Element;
+use crate::kinematics::Origin;
 use crate::kinematics::constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId,
 };
@@ -19,7 +19,7 @@ pub(super) struct JointParts {
     pub(super) coefficients: Vec<Coefficient>,
     pub(super) profiles: Vec<CamProfile>,
     /// The joint unknowns, behind those of the bodies, each with its joint.
-    pub(super) unknowns: Vec<(Element, Box<dyn JointUnknown>)>,
+    pub(super) unknowns: Vec<(Origin, Box<dyn JointUnknown>)>,
     /// Parameters of the joint whose equations are being written down.
     pub(super) parameters: Vec<ParameterId>,
 }
@@ -60,8 +60,8 @@ impl JointParts {
     }
 
     /// Adds a joint unknown.
-    pub(super) fn unknown(&mut self, element: Element, unknown: Box<dyn JointUnknown>) {
-        self.unknowns.push((element, unknown));
+    pub(super) fn unknown(&mut self, origin: Origin, unknown: Box<dyn JointUnknown>) {
+        self.unknowns.push((origin, unknown));
     }
 }
 
@@ -69,7 +69,7 @@ impl JointParts {
 #[must_use]
 pub(super) fn relations(
     mechanism: &Mechanism,
-    element: Element,
+    origin: Origin,
     joint: &Joint,
     parts: &mut JointParts,
 ) -> Vec<(Box<dyn Constraint>, Expression)> {
@@ -134,7 +134,7 @@ pub(super) fn relations(
             ]
         }
         JointKind::Cam { follower, profile } => {
-            let profile = parts.profile(profile, mechanism, element.describe(mechanism));
+            let profile = parts.profile(profile, mechanism, origin.describe(mechanism));
             let contour = Contour {
                 cam: from,
                 profile,
@@ -154,7 +154,7 @@ pub(super) fn relations(
                         contour,
                         follower: to,
                     };
-                    parts.unknown(element, Box::new(contact));
+                    parts.unknown(origin, Box::new(contact));
                     let along = |axis| Roller {
                         contour,
                         follower: to,
@@ -170,7 +170,7 @@ pub(super) fn relations(
                         contour,
                         follower: to,
                     };
-                    parts.unknown(element, Box::new(contact));
+                    parts.unknown(origin, Box::new(contact));
                     let face = FlatFace {
                         contour,
                         follower: to,

@@ -18,7 +18,7 @@ use super::constraint::configuration::{Configuration, on_nearest_turn};
 use super::constraint::moving_configuration::VariedConfiguration;
 use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, TurnEffect};
 use crate::kinematics::linear::nan_or_larger;
-use crate::kinematics::{Element, Error};
+use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
     DriverId, Expression, Jet, Mechanism, Motion, MovingProfile, Number, ParameterId,
 };
@@ -36,7 +36,7 @@ pub enum Target {
 #[derive(Debug)]
 pub struct Equation {
     /// The joint, constraint or driver that it belongs to.
-    pub element: Element,
+    pub origin: Origin,
     /// c(q).
     pub constraint: Box<dyn Constraint>,
     /// The target.
@@ -82,13 +82,13 @@ impl System {
         let mut equations = Vec::new();
         let mut joint_parts = JointParts::default();
         for (index, joint) in mechanism.joints.iter().enumerate() {
-            let element = Element::Joint(index);
+            let origin = Origin::Joint(index);
             joint_parts.parameters.clear();
             for (constraint, target) in
-                joint::relations(&mechanism, element, joint, &mut joint_parts)
+                joint::relations(&mechanism, origin, joint, &mut joint_parts)
             {
                 equations.push(Equation {
-                    element,
+                    origin,
                     constraint,
                     target: Target::Constant(target),
                     parameters: joint_parts.parameters.clone(),
@@ -98,7 +98,7 @@ impl System {
         }
         for (index, held) in mechanism.constraints.iter().enumerate() {
             equations.push(Equation {
-                element: Element::Constraint(index),
+                origin: Origin::Constraint(index),
                 constraint: constraint::of_coordinate(&held.coordinate),
                 target: Target::Constant(held.value.clone()),
                 parameters: Vec::new(),
@@ -109,7 +109,7 @@ impl System {
         for (index, driver) in mechanism.drivers.iter().enumerate() {
             driver_rows.push(equations.len());
             equations.push(Equation {
-                element: Element::Driver(DriverId(index)),
+                origin: Origin::Driver(DriverId(index)),
                 constraint: constraint::of_coordinate(&driver.coordinate),
                 target: Target::Driver(DriverId(index)),
                 parameters: Vec::new(),
@@ -156,12 +156,12 @@ impl System {
     pub fn describe_unknown(&self, column: usize) -> String {
         match self.mechanism.bodies.get(column / 3) {
             Some(body) => format!("body `{}`", body.name),
-            None => self.element_of(column).describe(&self.mechanism),
+            None => self.origin_of(column).describe(&self.mechanism),
         }
     }
 
     /// Returns the joint that a joint unknown belongs to.
-    pub(in crate::kinematics) fn element_of(&self, column: usize) -> Element {
+    pub(in crate::kinematics) fn origin_of(&self, column: usize) -> Origin {
         let place = column - 3 * self.mechanism.bodies.len();
         self.joint_parts.unknowns[place].0
     }
@@ -184,10 +184,10 @@ impl System {
         names
     }
 
-    /// Returns the rows of some elements, ascending.
-    pub(in crate::kinematics) fn rows_of(&self, elements: &[Element]) -> Vec<usize> {
+    /// Returns the rows of some origins, ascending.
+    pub(in crate::kinematics) fn rows_of(&self, origins: &[Origin]) -> Vec<usize> {
         let equations = self.equations.iter().enumerate();
-        let theirs = equations.filter(|(_, e)| elements.contains(&e.element));
+        let theirs = equations.filter(|(_, e)| origins.contains(&e.origin));
         theirs.map(|(row, _)| row).collect()
     }
 
@@ -285,12 +285,12 @@ impl System {
             *constant = expression.value(parameters);
             if !constant.is_finite() {
                 return Err(Error::NotFinite {
-                    what: equation.element.describe(&self.mechanism),
+                    what: equation.origin.describe(&self.mechanism),
                 });
             }
             if !equation.constraint.admits(*constant) {
                 return Err(Error::NotPositive {
-                    what: equation.element.describe(&self.mechanism),
+                    what: equation.origin.describe(&self.mechanism),
                     value: *constant,
                 });
             }
@@ -336,7 +336,7 @@ impl System {
         let rows = self.driver_rows.iter().zip(&self.mechanism.drivers);
         for ((&row, driver), &value) in rows.zip(drivers) {
             let equation = &self.equations[row];
-            let what = || equation.element.describe(&self.mechanism);
+            let what = || equation.origin.describe(&self.mechanism);
             if !value.is_finite() {
                 let quantity = match driver.motion() {
                     Some(Motion::Table(_)) => "value: the times of its table must rise",
@@ -364,7 +364,7 @@ impl System {
 
     /// Returns a driver as messages name it.
     pub(in crate::kinematics) fn describe_driver(&self, driver: DriverId) -> String {
-        self.driver_row(driver).element.describe(&self.mechanism)
+        self.driver_row(driver).origin.describe(&self.mechanism)
     }
 
     /// Fixes the whole turns of each angle row that is not a driver: those nearest the present

@@ -12,7 +12,7 @@
 use super::CoupledBlock;
 use super::estimate::Passed;
 use crate::kinematics::linear::nan_or_larger;
-use crate::kinematics::plan::carryover::CheckedSegment;
+use crate::kinematics::plan::choices::CheckedSegment;
 use crate::kinematics::plan::step::{BlockState, Extrapolation, Step};
 
 /// Largest sum of c and the norm of K of a single step after which a segment is laid.

@@ -36,16 +36,18 @@ fn height(theta: f64, signs: &[f64; CELLS]) -> f64 {
 fn accepts(solver: &mut Solver, from: (f64, &[f64; CELLS]), to: (f64, &[f64; CELLS])) -> bool {
     let ends = [from, to].map(|(theta, signs)| (pose(theta, signs), height(theta, signs)));
     let [(start, low), (end, high)] = ends;
-    let Solver { model, state, .. } = solver;
+    let Solver {
+        compiled, state, ..
+    } = solver;
     state.pose.q.copy_from_slice(&start);
     state.pose.drivers[0] = low;
-    state.move_to_pose(&model.system);
-    let mut bounds = StepBounds::new(&model.system);
+    state.move_to_pose(&compiled.system);
+    let mut bounds = StepBounds::new(&compiled.system);
     bounds.begin(false);
     bounds.drivers[0] = f64::EPSILON * (low + high);
     let mut state = BlockState {
         drivers: &[high],
-        ..state.block_state(&model.system)
+        ..state.block_state(&compiled.system)
     };
     let mut step = Step {
         extrapolation: Extrapolation {
@@ -56,7 +58,7 @@ fn accepts(solver: &mut Solver, from: (f64, &[f64; CELLS]), to: (f64, &[f64; CEL
         pivots: &Pivots::new(2 * CELLS),
         bounds: &mut bounds,
     };
-    let mut blocks = model.plan.blocks.iter_mut();
+    let mut blocks = compiled.plan.blocks.iter_mut();
     let large = blocks.find_map(|block| match block {
         BlockSolver::CoupledBlock(block) if block.test.inverse.is_empty() => Some(block),
         _ => None,
@@ -132,7 +134,7 @@ fn no_step_leads_onto_another_branch() {
 
 /// Returns the number of tubes that all blocks keep.
 fn kept_tubes(solver: &Solver) -> usize {
-    let blocks = solver.model.plan.blocks.iter();
+    let blocks = solver.compiled.plan.blocks.iter();
     let coupled = blocks.filter_map(|block| match block {
         BlockSolver::CoupledBlock(block) => Some(block.tubes.count()),
         _ => None,
@@ -176,7 +178,7 @@ fn a_tube_of_a_lift_serves_several_steps() {
         let height = |step: u32| cells as f64 * BAR * (FRAC_PI_6 + 5e-5 * f64::from(step)).sin();
         // The block that makes tubes as it moves.
         let place = |solver: &Solver| {
-            let blocks = solver.model.plan.blocks.iter();
+            let blocks = solver.compiled.plan.blocks.iter();
             let coupled = blocks.filter_map(|block| match block {
                 BlockSolver::CoupledBlock(block) => Some(block),
                 _ => None,

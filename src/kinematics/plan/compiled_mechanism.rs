@@ -1,4 +1,4 @@
-//! The model of a mechanism: its equations, their structure, and the plan that solves them.
+//! A compiled mechanism: its equations, their structure, and the plan that solves them.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::mechanism::{DriverId, Mechanism};
 
 /// The equations of a mechanism and the way in which they are solved.
 #[derive(Debug)]
-pub(in crate::kinematics) struct Model {
+pub(in crate::kinematics) struct CompiledMechanism {
     pub(in crate::kinematics) system: System,
     pub(in crate::kinematics) structure: Structure,
     pub(in crate::kinematics) plan: BlockPlan,
@@ -47,7 +47,7 @@ impl RedundantRows {
     }
 }
 
-impl Model {
+impl CompiledMechanism {
     /// Writes down the equations and analyses their structure. Also returns whether equations and
     /// unknowns pair up; otherwise the plan is empty.
     pub(in crate::kinematics) fn new(mechanism: Arc<Mechanism>) -> (Self, bool) {
@@ -58,14 +58,14 @@ impl Model {
         let structure = Structure::new(&system, &[]);
         let pairs_up = structure.is_some();
         let structure = structure.unwrap_or_else(|| Structure::of_nothing(&system));
-        let model = Self {
+        let compiled = Self {
             plan: BlockPlan::new(&system, &structure),
             structure,
             redundant: RedundantRows::default(),
             measures,
             system,
         };
-        (model, pairs_up)
+        (compiled, pairs_up)
     }
 
     /// Compiles structure and plan for all rows but those set aside.

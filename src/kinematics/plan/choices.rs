@@ -7,7 +7,7 @@ use crate::kinematics::linear::PivotOrder;
 /// Proofs of smaller blocks that hold for several steps have no effect on further results and are
 /// no part of it.
 #[derive(Debug, Default, PartialEq)]
-pub struct BlockCarryover {
+pub struct BlockChoices {
     /// Pivots of its Jacobian, and of the one in the middle of a chord.
     pub pivots: [PivotOrder; 2],
     /// The line along which it was tested last.
@@ -35,7 +35,7 @@ pub struct CheckedSegment {
     pub driver_deviation: f64,
 }
 
-impl Clone for BlockCarryover {
+impl Clone for BlockChoices {
     fn clone(&self) -> Self {
         let mut clone = Self::default();
         clone.clone_from(self);
