@@ -53,7 +53,7 @@ fn run(target: fn(&[u8]), corpus: &[Vec<u8>], mutations: u64) {
 fn mechanism_files() {
     let mut corpus = files("corpus/mechanism_file");
     corpus.extend(files("../mechanisms"));
-    corpus.extend(files("../tests/diagnostics"));
+    corpus.extend(files("../tests/file/diagnostics"));
     run(fuzz::mechanism_file::run, &corpus, 3000);
 }
 

@@ -28,7 +28,7 @@ NOT_RUN = {
     "make runtimes ONLY='linux64 win64'": "likewise",
     "python3 -m venv env": "for packages to be downloaded into",
     "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
-    "biela watch piston.toml": "runs until it is ended; tests/watch.rs has tests of its own",
+    "biela watch piston.toml": "runs until it is ended; tests/program/watch.rs has tests of its own",
     "biela page piston.toml -o piston.html": "needs `make page`; tests/page has tests of its own",
     "env/bin/python parameter_sweep.py": "test_examples.py runs it",
     "env/bin/python dask_sweep.py": "test_examples.py runs it",

@@ -174,7 +174,7 @@ ANSWER = re.compile(r"^(?:error|warning)\[([a-z0-9-]+)\]: (.*)$", re.MULTILINE)
 SNAPSHOTS = sorted(
     {
         found
-        for path in (ROOT / "tests" / "snapshots").glob("diagnostics__*.snap")
+        for path in (ROOT / "tests" / "file" / "snapshots").glob("file__diagnostics__*.snap")
         for found in ANSWER.findall(path.read_text(encoding="utf-8"))
     }
 )

@@ -1,4 +1,4 @@
-//! Mechanisms read from right files; `tests/diagnostics.rs` has the wrong ones.
+//! Mechanisms read from right files; `tests/file/diagnostics.rs` has the wrong ones.
 
 use crate::mechanism::{
     BodyId, CoordinateKind, DisplayUnit, DriverSource, JointKind, MarkerId, Mechanism, Motion,

@@ -1,4 +1,4 @@
-//! Cases that no host can bring about, or see, by itself. `tests/c_host` has the rest.
+//! Cases that no host can bring about, or see, by itself. `tests/fmi/c_host` has the rest.
 
 use std::ffi::c_char;
 use std::mem::MaybeUninit;

@@ -1,0 +1,3 @@
+//! Mechanism files: answers to bad ones.
+
+mod diagnostics;

@@ -1,0 +1,4 @@
+//! The sources themselves: imports and comments.
+
+mod language;
+mod layers;

@@ -1,0 +1,15 @@
+//! The commands as a user types them; `watch` has a test of its own.
+
+mod check;
+mod draw;
+mod exit_codes;
+mod export;
+mod help;
+mod input;
+mod new;
+mod overwriting;
+mod pictures_of_runs;
+mod program;
+mod range;
+mod run;
+mod tolerance;

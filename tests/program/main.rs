@@ -1,0 +1,8 @@
+//! The program, as a user calls it.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod cli;
+mod first_steps;
+mod watch;

@@ -1,0 +1,246 @@
+//! Free bodies: Newton's and Euler's laws for each body of every shipped mechanism, with all forces
+//! on it, each by the textbook's rule for its joint.
+//!
+//! Together with the directions in which a joint cannot exert a force, which are tested too, the
+//! laws determine all reactions.
+
+use biela::kinematics::{ForceQuantity, Reported};
+use biela::mechanism::{
+    BodyId, CamFollower, Coordinate, CoordinateKind, DriverId, Expression, JointKind, Load,
+    MarkerId, Mechanism,
+};
+use nalgebra::{Rotation2, Vector2};
+
+use crate::common::stems;
+use crate::forces::loaded::{Loaded, loaded};
+
+/// Error of a balance relative to the largest force in it and to the condition: a few rounding
+/// errors for each of the digits that the condition loses.
+const ROUNDING: f64 = 1e-14;
+
+/// Force and torque about ground's origin on each body.
+struct Balance<'a> {
+    loaded: &'a Loaded,
+    sums: Vec<[f64; 3]>,
+    largest: f64,
+}
+
+impl Balance<'_> {
+    fn mechanism(&self) -> &Mechanism {
+        self.loaded.solver.mechanism()
+    }
+
+    fn body(&self, marker: MarkerId) -> Option<BodyId> {
+        self.mechanism().markers[marker.index()].body
+    }
+
+    fn phi(&self, body: Option<BodyId>) -> f64 {
+        body.map_or(0.0, |body| {
+            self.loaded.solver.pose().q[3 * body.index() + 2]
+        })
+    }
+
+    fn point(&self, marker: MarkerId) -> Vector2<f64> {
+        let [x, y] = self.loaded.solver.marker(marker, &self.loaded.rates);
+        Vector2::new(x.value, y.value)
+    }
+
+    /// The x-axis of a marker.
+    fn axis(&self, marker: MarkerId) -> Vector2<f64> {
+        let parameters = &self.loaded.solver.pose().parameters;
+        let angle = &self.mechanism().markers[marker.index()].angle;
+        let own = angle.evaluate(&|p| parameters[p.index()], 0.0);
+        Rotation2::new(self.phi(self.body(marker)) + own) * Vector2::x()
+    }
+
+    fn add(&mut self, body: Option<BodyId>, at: Vector2<f64>, force: Vector2<f64>, torque: f64) {
+        self.largest = self.largest.max(force.norm()).max(torque.abs());
+        if let Some(body) = body {
+            let sum = &mut self.sums[body.index()];
+            sum[0] += force.x;
+            sum[1] += force.y;
+            sum[2] += torque + at.perp(&force);
+        }
+    }
+
+    /// Adds an effort along a coordinate.
+    fn add_effort(&mut self, coordinate: &Coordinate, effort: f64) {
+        let Coordinate {
+            kind,
+            from,
+            to,
+            axes,
+        } = *coordinate;
+        let (i, j) = (self.point(from), self.point(to));
+        let (body_i, body_j) = (self.body(from), self.body(to));
+        let u = self.axis(axes);
+        let direction = match kind {
+            CoordinateKind::Angle => {
+                self.add(body_j, j, Vector2::zeros(), effort);
+                self.add(body_i, i, Vector2::zeros(), -effort);
+                return;
+            }
+            CoordinateKind::X => u,
+            CoordinateKind::Y => Vector2::new(-u.y, u.x),
+            CoordinateKind::Distance => (j - i).normalize(),
+        };
+        self.add(body_j, j, direction * effort, 0.0);
+        self.add(body_i, i, -direction * effort, 0.0);
+        // The two forces make a couple unless they are in line: the third body closes it.
+        let couple = -(j - i).perp(&(direction * effort));
+        if kind != CoordinateKind::Distance {
+            self.add(self.body(axes), i, Vector2::zeros(), couple);
+        }
+    }
+}
+
+#[test]
+fn every_body_is_in_balance() {
+    for name in stems("mechanisms", "toml") {
+        let mut mechanism = loaded(&name);
+        mechanism.outputs.indeterminate = biela::mechanism::Indeterminate::MinimumNorm;
+        check(&name, Loaded::new(mechanism));
+    }
+}
+
+fn check(name: &str, mut loaded: Loaded) {
+    let rcond = loaded.solver.rcond();
+    let mechanism = std::sync::Arc::clone(loaded.solver.mechanism());
+    let mut balance = Balance {
+        loaded: &loaded,
+        sums: vec![[0.0; 3]; mechanism.bodies.len()],
+        largest: 0.0,
+    };
+    let value = |quantity| loaded.forces.value(quantity);
+    for (index, joint) in mechanism.joints.iter().enumerate() {
+        let [fx, fy, torque] = [0, 1, 2].map(|k| value(ForceQuantity::Reaction(index, k)));
+        let force = Vector2::new(fx, fy);
+        let (i, j) = (balance.body(joint.from), balance.body(joint.to));
+        let at = balance.point(joint.to);
+        if let JointKind::Gear { sizes, carrier, .. } | JointKind::Belt { sizes, carrier, .. } =
+            &joint.kind
+        {
+            let parameters = &loaded.solver.pose().parameters;
+            let [first, second] = sizes
+                .expressions()
+                .each_ref()
+                .map(|size: &Expression| size.evaluate(&|p| parameters[p.index()], 0.0));
+            let same_sense = match joint.kind {
+                JointKind::Gear { internal, .. } => internal,
+                JointKind::Belt { crossed, .. } => !crossed,
+                _ => unreachable!(),
+            };
+            let k = if same_sense {
+                first / second
+            } else {
+                -first / second
+            };
+            for (body, torque) in [
+                (j, torque),
+                (i, -k * torque),
+                (*carrier, (k - 1.0) * torque),
+            ] {
+                balance.add(body, at, Vector2::zeros(), torque);
+            }
+            continue;
+        }
+        balance.add(j, at, force, torque);
+        balance.add(i, at, -force, -torque);
+        // A part of the mechanism's own lengths [m]: torques next to forces.
+        let slack = 1e-12 / rcond * (force.norm() + torque.abs());
+        let along = |direction: Vector2<f64>| direction.normalize().dot(&force).abs();
+        let u = balance.axis(joint.from);
+        if !Reported::of(&joint.kind).has(2) {
+            assert!(
+                torque.abs() <= slack,
+                "{name}.{}: torque {torque}",
+                joint.name
+            );
+        }
+        match &joint.kind {
+            JointKind::Slot
+            | JointKind::RevoluteTranslational { .. }
+            | JointKind::Translational => {
+                assert!(along(u) <= slack, "{name}.{}: along the slide", joint.name);
+            }
+            JointKind::Link { .. } => {
+                let d = at - balance.point(joint.from);
+                let across = Vector2::new(-d.y, d.x);
+                assert!(
+                    along(across) <= slack,
+                    "{name}.{}: across the link",
+                    joint.name
+                );
+            }
+            JointKind::Cam {
+                follower: CamFollower::Flat,
+                ..
+            } => {
+                let face = balance.axis(joint.to);
+                assert!(
+                    along(face) <= slack,
+                    "{name}.{}: along the face",
+                    joint.name
+                );
+            }
+            JointKind::RackAndPinion { .. } => {
+                // Along the teeth.
+                let rack = balance.axis(joint.to);
+                let across = Vector2::new(-rack.y, rack.x);
+                assert!(along(across) <= slack, "{name}.{}", joint.name);
+            }
+            _ => {}
+        }
+    }
+    for (index, driver) in mechanism.drivers.iter().enumerate() {
+        let effort = value(ForceQuantity::Effort(DriverId(index)));
+        balance.add_effort(&driver.coordinate, effort);
+    }
+    for (index, constraint) in mechanism.constraints.iter().enumerate() {
+        balance.add_effort(&constraint.coordinate, value(ForceQuantity::Held(index)));
+    }
+    for (index, force) in mechanism.forces.iter().enumerate() {
+        let [x, y, torque] = [0, 1, 2].map(|k| value(ForceQuantity::Applied(index, k)));
+        match &force.load {
+            Load::Coordinate { coordinate, .. } => balance.add_effort(coordinate, x),
+            Load::Marker { marker, axes, .. } => {
+                let axis = axes.map_or(Vector2::x(), |axes| balance.axis(axes));
+                let across = Vector2::new(-axis.y, axis.x);
+                let (body, at) = (balance.body(*marker), balance.point(*marker));
+                balance.add(body, at, axis * x + across * y, torque);
+            }
+        }
+    }
+    let pose = loaded.solver.pose();
+    let of = |e: &Expression| e.evaluate(&|p| pose.parameters[p.index()], 0.0);
+    let gravity = mechanism.simulation.gravity.each_ref().map(of);
+    for (index, body) in mechanism.bodies.iter().enumerate() {
+        let k = 3 * index;
+        let (v, a) = (loaded.rates.velocity(), loaded.rates.acceleration());
+        let (omega, alpha) = (v[k + 2], a[k + 2]);
+        let [x, y] = body
+            .center
+            .as_ref()
+            .map(|c| c.each_ref().map(of))
+            .expect("it has one");
+        let arm = Rotation2::new(pose.q[k + 2]) * Vector2::new(x, y);
+        let center = Vector2::new(pose.q[k], pose.q[k + 1]) + arm;
+        let across = Vector2::new(-arm.y, arm.x);
+        let acceleration = Vector2::new(a[k], a[k + 1]) + across * alpha - arm * omega * omega;
+        let mass = of(body.mass.as_ref().expect("it has one"));
+        let inertia = of(body.inertia.as_ref().expect("it has one"));
+        let force = (acceleration - Vector2::from(gravity)) * mass;
+        balance.add(Some(BodyId(index)), center, -force, -inertia * alpha);
+    }
+    let limit = ROUNDING / rcond * balance.largest * (1.0 + mechanism.bodies.len() as f64);
+    for (body, sum) in mechanism.bodies.iter().zip(&balance.sums) {
+        for component in sum {
+            assert!(
+                component.abs() <= limit,
+                "{name}.{}: {sum:?} of {}",
+                body.name,
+                balance.largest
+            );
+        }
+    }
+}

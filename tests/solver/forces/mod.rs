@@ -1,0 +1,12 @@
+//! Forces of mechanisms whose motion is known, against laws of mechanics that the solver does not
+//! use, closed forms and published figures.
+
+mod balance;
+mod cases;
+mod change_points;
+mod energy;
+mod fmu;
+mod invariance;
+mod loaded;
+mod published;
+mod redundant;

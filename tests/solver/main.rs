@@ -1,0 +1,24 @@
+//! Assembly, motion, singular positions and forces, against closed forms.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/differences.rs"]
+mod differences;
+#[path = "../common/generated.rs"]
+#[allow(dead_code, reason = "also used by `benches/`")]
+mod generated;
+
+mod assembly;
+mod cam;
+mod closed_form;
+mod forces;
+mod modes;
+mod motion;
+mod range;
+mod redundancy;
+mod sensitivity;
+mod singular;
+mod singular_kinds;
+mod start;
+mod stepping;
+mod verdicts;
