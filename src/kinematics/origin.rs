@@ -30,7 +30,7 @@ impl Origin {
         let kind = match self {
             Self::Joint(_) => "joint",
             Self::Constraint(_) => "constraint",
-            Self::Driver(_) => "driver",
+            Self::Driver(driver) => mechanism.drivers[driver.index()].noun(),
         };
         format!("{kind} `{}`", self.name(mechanism))
     }

@@ -1,7 +1,7 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{MarkerId, Mechanism, Unit};
+use super::{DriverSource, MarkerId, Mechanism, Unit};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +32,48 @@ impl Coordinate {
             CoordinateKind::X => format!("x from `{from}` to `{to}`{on_axes}"),
             CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
             CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
+        }
+    }
+}
+
+impl Mechanism {
+    /// Lets freedoms without a start begin at the values that the estimates give.
+    pub(super) fn start_at_estimates(&mut self) {
+        let parameters = self.default_parameters();
+        let starts: Vec<_> = self.drivers.iter().map(|driver| {
+            self.estimated(driver.coordinate, &parameters)
+        }).collect();
+        for (driver, estimated) in self.drivers.iter_mut().zip(starts) {
+            if let DriverSource::Free { start, .. } = &mut driver.source
+                && start.is_nan()
+            {
+                *start = estimated;
+            }
+        }
+    }
+
+    /// Returns the value of a coordinate where all bodies are at their estimates.
+    fn estimated(&self, coordinate: Coordinate, parameters: &[f64]) -> f64 {
+        let place = |id: MarkerId| {
+            let marker = &self.markers[id.index()];
+            let [x, y] = marker.position.each_ref().map(|e| e.value(parameters));
+            let angle = marker.angle.value(parameters);
+            let Some(body) = marker.body else {
+                return [x, y, angle];
+            };
+            let estimate = &self.bodies[body.index()].estimate;
+            let [x0, y0, phi] = estimate.each_ref().map(|e| e.value(parameters));
+            let (sin, cos) = phi.sin_cos();
+            [x0 + cos * x - sin * y, y0 + sin * x + cos * y, phi + angle]
+        };
+        let [from, to, axes] = [coordinate.from, coordinate.to, coordinate.axes].map(place);
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let (sin, cos) = axes[2].sin_cos();
+        match coordinate.kind {
+            CoordinateKind::Angle => to[2] - from[2],
+            CoordinateKind::X => cos * dx + sin * dy,
+            CoordinateKind::Y => cos * dy - sin * dx,
+            CoordinateKind::Distance => dx.hypot(dy),
         }
     }
 }

@@ -327,9 +327,30 @@ impl Driver {
     #[must_use]
     pub fn motion(&self) -> Option<&Motion> {
         match &self.source {
-            DriverSource::Input { .. } => None,
+            DriverSource::Input { .. } | DriverSource::Free { .. } => None,
             DriverSource::Motion(motion) => Some(motion),
         }
+    }
+
+    /// Returns whether the coordinate is a freedom: it moves by the forces.
+    #[must_use]
+    pub fn is_free(&self) -> bool {
+        matches!(self.source, DriverSource::Free { .. })
+    }
+
+    /// Returns the value at the start \[m or rad\], `None` for a prescribed motion.
+    #[must_use]
+    pub fn start(&self) -> Option<f64> {
+        match self.source {
+            DriverSource::Input { start } | DriverSource::Free { start, .. } => Some(start),
+            DriverSource::Motion(_) => None,
+        }
+    }
+
+    /// Returns the word for it in messages.
+    #[must_use]
+    pub fn noun(&self) -> &'static str {
+        if self.is_free() { "freedom" } else { "driver" }
     }
 
     /// Describes that a value \[m or rad\] at `time` \[s\] has gone beyond a limit. `beyond`, which
@@ -361,6 +382,14 @@ pub enum DriverSource {
     },
     /// Prescribed motion.
     Motion(Motion),
+    /// The forces, of which it takes none: the coordinate is a freedom.
+    Free {
+        /// Value at the start, which defines the assembly mode \[m or rad\], evaluated with the
+        /// file's parameter values.
+        start: f64,
+        /// Velocity at the start \[m/s or rad/s\].
+        velocity: f64,
+    },
 }
 
 /// Coordinate that is an output.

@@ -67,7 +67,9 @@ impl Path {
         let parameters = mechanism.default_parameters();
         let drivers = mechanism.drivers.iter();
         let curves = drivers.map(|driver| match driver.source {
-            DriverSource::Input { start } => Curve::held(start, start),
+            DriverSource::Input { start } | DriverSource::Free { start, .. } => {
+                Curve::held(start, start)
+            }
             DriverSource::Motion(_) => Curve::Motion,
         });
         Self {

@@ -20,6 +20,7 @@ mod coordinate;
 mod derived;
 mod driver;
 mod force;
+mod freedom;
 mod joint;
 mod kind;
 mod limits;
@@ -117,6 +118,8 @@ impl<'a> Context<'a> {
         let simulation = self.simulation(&root.simulation.or_empty());
         let (bodies, markers) = self.bodies(&root.ground, &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
+        let mut drivers = self.each(&root.drivers, driver);
+        drivers.extend(self.each(&root.freedoms, Self::freedom));
         let force = |context: &mut Self, entry| context.force(entry, simulation.start);
         let measure = |context: &mut Self, entry| match is_derived(&entry) {
             true => None,
@@ -135,7 +138,7 @@ impl<'a> Context<'a> {
             markers,
             joints: self.each(&root.joints, Self::joint),
             constraints: self.each(&root.constraints, Self::constraint),
-            drivers: self.each(&root.drivers, driver),
+            drivers,
             measures: self.each(&root.measures, measure),
             derived: Vec::new(),
             forces: self.each(&root.forces, force),
@@ -144,9 +147,11 @@ impl<'a> Context<'a> {
             canonical: syntax::canonical(document) + &self.file_tables,
             table_files: std::mem::take(&mut self.table_files),
         };
+        mechanism.start_at_estimates();
         mechanism.derived = self.derived(root.measures.items(), &mechanism);
         if !self.failed {
             self.warn_of_large_lengths();
+            self.check_freedoms(&mechanism, root.freedoms.items());
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
         }
         Some(mechanism)

@@ -38,6 +38,7 @@ impl<'a> Context<'a> {
             ("joint", &root.joints),
             ("constraint", &root.constraints),
             ("driver", &root.drivers),
+            ("freedom", &root.freedoms),
             ("measure", &root.measures),
             ("force", &root.forces),
         ];

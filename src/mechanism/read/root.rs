@@ -15,6 +15,7 @@ use super::coordinate::{ConstraintKeys, CoordinateKeys};
 use super::derived::AnyMeasure;
 use super::driver::DriverKeys;
 use super::force::AnyForce;
+use super::freedom::FreedomKeys;
 use super::joint::AnyJoint;
 #[cfg(feature = "cli")]
 use super::kind::Described;
@@ -54,6 +55,8 @@ table! {
         constraints: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, ConstraintKeys<'static>)>),
         /// Coordinates that are driven.
         drivers: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, DriverKeys<'static>)>),
+        /// Coordinates that move by the forces.
+        freedoms: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, FreedomKeys<'static>)>),
         /// Coordinates that are outputs.
         measures: Vec<Entry<'a>> = Named(PhantomData::<AnyMeasure>),
         /// Forces on the bodies, besides gravity.
