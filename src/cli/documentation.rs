@@ -6,13 +6,13 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use super::column::Output;
+use super::commands::range::{end_text, with_unit};
 use super::error::Error;
 use super::film::Film;
 use super::form::Form;
 use super::input::Input;
 use super::live;
 use super::motion::Motion;
-use super::range::{end_text, with_unit};
 use super::signals::Signals;
 use crate::drawing::animation::{Animation, fill, page_with, player};
 use crate::drawing::svg::escape;

@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::check::json::report_on;
+use super::commands::check::json::report_on;
+use super::commands::export::{pack, platform, version};
+use super::commands::range;
 use super::conditions::check_limits;
-use super::export::{pack, platform, version};
 use super::form::Form;
 use super::input::Input;
-use super::{conditions, page_solver, range, runtime};
+use super::{conditions, page_solver, runtime};
 use crate::fmi::Platform;
 use crate::kinematics::End;
 use crate::mechanism::{DriverId, Mechanism, ParameterId, Source};

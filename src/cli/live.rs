@@ -12,22 +12,22 @@ use crate::drawing::animation::{fill, page_with};
 use crate::drawing::svg::escape;
 use crate::mechanism::{Mechanism, Source};
 
-const MAIN: &str = include_str!("live/live.html");
+const MAIN: &str = include_str!("../../page/scripts/live.html");
 /// The licences of what is inside the solver.
 const LICENCES: &str = include_str!("../../page/licenses.txt");
-const SHARED: &str = include_str!("live/shared.js");
+const SHARED: &str = include_str!("../../page/scripts/shared.js");
 /// Style of the part.
-pub(super) const STYLE: &str = include_str!("live/live.css");
+pub(super) const STYLE: &str = include_str!("../../page/scripts/live.css");
 /// The scripts; each uses only those before it.
 const SCRIPTS: [&str; 8] = [
-    include_str!("live/solver.js"),
-    include_str!("live/picture.js"),
-    include_str!("live/hand.js"),
-    include_str!("live/controls.js"),
-    include_str!("live/play.js"),
-    include_str!("live/chart.js"),
-    include_str!("live/files.js"),
-    include_str!("live/live.js"),
+    include_str!("../../page/scripts/solver.js"),
+    include_str!("../../page/scripts/picture.js"),
+    include_str!("../../page/scripts/hand.js"),
+    include_str!("../../page/scripts/controls.js"),
+    include_str!("../../page/scripts/play.js"),
+    include_str!("../../page/scripts/chart.js"),
+    include_str!("../../page/scripts/files.js"),
+    include_str!("../../page/scripts/live.js"),
 ];
 
 /// Returns a page for a mechanism: one HTML file, with this element for the solver; see [`solver`].

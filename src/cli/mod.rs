@@ -1,19 +1,16 @@
-//! The command line: one file per command.
+//! The command line: one file per command in `commands`, and what they share.
 //!
 //! Results go to stdout, messages to stderr. The exit status is 0 for success, 1 for an error in
 //! the mechanism, 2 for an error in the command. Some commands are also functions, for programs
 //! without a command line.
 
 mod bounds;
-mod check;
 mod column;
-mod completions;
+mod commands;
 mod conditions;
 mod csv;
 mod documentation;
-mod draw;
 mod error;
-mod export;
 mod film;
 mod form;
 mod input;
@@ -22,26 +19,18 @@ mod library;
 mod live;
 mod message;
 mod motion;
-mod new;
 mod output;
-mod page;
 mod page_solver;
 mod picture;
-mod platforms;
 mod plot;
 mod progress;
-mod range;
 mod recorder;
 pub mod render;
-mod run;
 mod runtime;
-mod schema;
 mod signals;
 mod stdout;
 mod suggested_estimates;
 mod times;
-mod tolerance;
-mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -65,18 +54,18 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    New(new::New),
-    Check(check::Check),
-    Run(run::Run),
-    Range(range::Range),
-    Tolerance(tolerance::Tolerance),
-    Draw(draw::Draw),
-    Page(page::Page),
-    Watch(watch::Watch),
-    Export(export::Export),
-    Platforms(platforms::Platforms),
-    Schema(schema::Schema),
-    Completions(completions::Completions),
+    New(commands::new::New),
+    Check(commands::check::Check),
+    Run(commands::run::Run),
+    Range(commands::range::Range),
+    Tolerance(commands::tolerance::Tolerance),
+    Draw(commands::draw::Draw),
+    Page(commands::page::Page),
+    Watch(commands::watch::Watch),
+    Export(commands::export::Export),
+    Platforms(commands::platforms::Platforms),
+    Schema(commands::schema::Schema),
+    Completions(commands::completions::Completions),
 }
 
 /// Runs the program with these arguments, the first being its own name.

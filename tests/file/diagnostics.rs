@@ -146,7 +146,10 @@ fn each_code_has_a_file() {
         .map(|(stem, _)| stem)
         .collect();
     for code in Diagnostic::CODES {
-        assert!(stems.contains(*code), "no tests/file/diagnostics/{code}.toml");
+        assert!(
+            stems.contains(*code),
+            "no tests/file/diagnostics/{code}.toml"
+        );
     }
 }
 

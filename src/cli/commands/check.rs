@@ -1,7 +1,7 @@
 //! `biela check`
 
 mod forces;
-pub(super) mod json;
+pub(in crate::cli) mod json;
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
@@ -11,12 +11,12 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 use forces::Forces;
 
-use super::error::Error;
-use super::input::{Input, warn_of_misfits};
-use super::message::Message;
-use super::output::print;
-use super::suggested_estimates::as_estimates;
-use super::times::Times;
+use crate::cli::error::Error;
+use crate::cli::input::{Input, warn_of_misfits};
+use crate::cli::message::Message;
+use crate::cli::output::print;
+use crate::cli::suggested_estimates::as_estimates;
+use crate::cli::times::Times;
 use crate::kinematics::{self, Mode, Modes, Origin, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
     CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
@@ -35,7 +35,7 @@ use crate::mechanism::{
 /// nearest pose; if joints contradict each other, it prints the play that the last of them needs
 /// over the motion of the first driver.
 #[derive(Args, Debug)]
-pub(super) struct Check {
+pub(in crate::cli) struct Check {
     /// The mechanism file.
     file: PathBuf,
     /// Print the pose, or the nearest one, as estimates to paste into the file.
@@ -69,7 +69,7 @@ const MOST_STEPS_WATCHED: u64 = 100_000;
 const FAR: f64 = FRAC_PI_2;
 
 impl Check {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         match self.format {
             Format::Text => self.tell(),
             Format::Json => self.report(),
@@ -400,7 +400,7 @@ fn with_unit(kind: CoordinateKind, value: f64) -> String {
 }
 
 /// Formats a number with a power of ten, which is left out if it is zero.
-pub(super) fn scientific(value: f64, decimals: usize) -> String {
+pub(in crate::cli) fn scientific(value: f64, decimals: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }

@@ -7,13 +7,13 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::check::scientific;
-use super::column::{Output, Source};
-use super::conditions::Conditions;
-use super::error::Error;
-use super::input::Input;
-use super::motion::Motion;
-use super::output::print;
-use super::times::Span;
+use crate::cli::column::{Output, Source};
+use crate::cli::conditions::Conditions;
+use crate::cli::error::Error;
+use crate::cli::input::Input;
+use crate::cli::motion::Motion;
+use crate::cli::output::print;
+use crate::cli::times::Span;
 use crate::kinematics::Direction;
 use crate::mechanism::{Mechanism, Order, ParameterId, Signal, Unit};
 
@@ -29,7 +29,7 @@ use crate::mechanism::{Mechanism, Order, ParameterId, Signal, Unit};
 #[command(
     after_help = "Example: biela tolerance slider_crank.toml --drive 'crank_angle = 2*pi*t' --stop 1"
 )]
-pub(super) struct Tolerance {
+pub(in crate::cli) struct Tolerance {
     /// The mechanism file.
     file: PathBuf,
     #[command(flatten)]
@@ -55,7 +55,7 @@ struct Deviation {
 }
 
 impl Tolerance {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let input = Input::read(&self.file)?;
         let times = self.span.times(&input.mechanism)?;
         let scenario = (self.conditions).scenario(&input.mechanism, times.start, None)?;

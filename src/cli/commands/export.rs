@@ -6,16 +6,16 @@ use std::time::{Duration, SystemTime};
 
 use clap::Args;
 
-use super::documentation;
-use super::error::Error;
-use super::form::Form;
-use super::input::{Input, warn_of_misfits};
-use super::input_files::InputFiles;
-use super::message::tell;
-use super::output::write;
-use super::page_solver;
-use super::runtime::{self, FoundLibrary};
-use super::stdout::is_stdout;
+use crate::cli::documentation;
+use crate::cli::error::Error;
+use crate::cli::form::Form;
+use crate::cli::input::{Input, warn_of_misfits};
+use crate::cli::input_files::InputFiles;
+use crate::cli::message::tell;
+use crate::cli::output::write;
+use crate::cli::page_solver;
+use crate::cli::runtime::{self, FoundLibrary};
+use crate::cli::stdout::is_stdout;
 use crate::fmi::{Platform, RuntimeLibrary, Version, describe, write_fmu};
 use crate::kinematics::Solver;
 
@@ -36,7 +36,7 @@ use crate::kinematics::Solver;
 /// a time (seconds since 1970) does the model description say when it was generated.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela export four_bar.toml -o four_bar.fmu")]
-pub(super) struct Export {
+pub(in crate::cli) struct Export {
     /// The mechanism file.
     file: PathBuf,
     /// The FMU to write, `-` for stdout [default: the mechanism's name with .fmu in the current
@@ -68,7 +68,7 @@ pub(super) struct Export {
 }
 
 impl Export {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let generated = generation_time()?;
         let input = Input::read(&self.file)?;
         let mechanism = &input.mechanism;
@@ -132,7 +132,7 @@ fn packed(libraries: &[FoundLibrary], version: Version, chosen: bool) -> String 
 
 /// Returns the FMU of a mechanism, which `solver` has assembled; with a page if the solver for pages
 /// is given.
-pub(super) fn pack(
+pub(in crate::cli) fn pack(
     input: &Input,
     solver: &Solver,
     form: Form,
@@ -159,7 +159,7 @@ pub(super) fn pack(
 }
 
 /// Reads the name of a platform.
-pub(super) fn platform(name: &str) -> Result<Platform, String> {
+pub(in crate::cli) fn platform(name: &str) -> Result<Platform, String> {
     Platform::named(name).ok_or_else(|| {
         let names = Platform::ALL.map(|platform| platform.name);
         format!("expected one of {}", names.join(", "))
@@ -167,7 +167,7 @@ pub(super) fn platform(name: &str) -> Result<Platform, String> {
 }
 
 /// Reads a version of FMI.
-pub(super) fn version(text: &str) -> Result<Version, String> {
+pub(in crate::cli) fn version(text: &str) -> Result<Version, String> {
     match text {
         "2" | "2.0" => Ok(Version::Fmi2),
         "3" | "3.0" => Ok(Version::Fmi3),

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
 
-use super::bounds::{Bounds, driver_named, no_driver};
-use super::conditions::Conditions;
-use super::error::Error;
-use super::input::Input;
-use super::input_files::InputFiles;
-use super::motion::Motion;
-use super::picture::Format;
-use super::signals::Signals;
+use crate::cli::bounds::{Bounds, driver_named, no_driver};
+use crate::cli::conditions::Conditions;
+use crate::cli::error::Error;
+use crate::cli::input::Input;
+use crate::cli::input_files::InputFiles;
+use crate::cli::motion::Motion;
+use crate::cli::picture::Format;
+use crate::cli::signals::Signals;
 use crate::drawing::{Diagram, Followed, ForcePlace, usual_driver};
 use crate::mechanism::Mechanism;
 
@@ -31,7 +31,7 @@ use crate::mechanism::Mechanism;
 #[command(after_help = "Examples:\n  \
         biela draw four_bar.toml --drive 'crank_angle = 120*deg' -o four_bar.svg\n  \
         biela draw four_bar.toml --poses 8 --dimensions -o four_bar.png")]
-pub(super) struct Draw {
+pub(in crate::cli) struct Draw {
     /// The mechanism file.
     file: PathBuf,
     /// The picture to write; its extension, .svg or .png, decides, and `-` is SVG to stdout
@@ -88,7 +88,7 @@ pub(super) struct Draw {
 }
 
 impl Draw {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
         if self.forces {

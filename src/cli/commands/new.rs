@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::error::Error;
-use super::message::tell;
+use crate::cli::error::Error;
+use crate::cli::message::tell;
 use crate::mechanism::{is_identifier, similar_identifier};
 
 /// Write a commented mechanism to start from.
@@ -15,7 +15,7 @@ use crate::mechanism::{is_identifier, similar_identifier};
 /// The file is a copy of one of the mechanisms that come with biela, under another name.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela new my_linkage --from four_bar")]
-pub(super) struct New {
+pub(in crate::cli) struct New {
     /// The mechanism's name: letters, digits and `_`. Its file is NAME.toml.
     name: String,
     /// The mechanism to start from.
@@ -39,8 +39,8 @@ macro_rules! template {
     ($name:literal $(, $table:literal)*) => {
         Template {
             name: $name,
-            text: include_str!(concat!("../../mechanisms/", $name, ".toml")),
-            tables: &[$(($table, include_str!(concat!("../../mechanisms/", $table)))),*],
+            text: include_str!(concat!("../../../mechanisms/", $name, ".toml")),
+            tables: &[$(($table, include_str!(concat!("../../../mechanisms/", $table)))),*],
         }
     };
 }
@@ -95,7 +95,7 @@ static TEMPLATES: [Template; 45] = [
 ];
 
 impl New {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         if !is_identifier(&self.name) {
             let similar = similar_identifier(&self.name);
             let example = similar.map(|name| format!("; expected for example `{name}`"));

@@ -11,16 +11,16 @@ use std::time::SystemTime;
 
 use clap::Args;
 
-use super::conditions::Conditions;
-use super::documentation::show;
-use super::error::Error;
-use super::input::{Input, misfits};
-use super::input_files::tables;
-use super::live;
-use super::message::{Message, tell};
-use super::output::print;
-use super::page_solver;
-use super::render::render;
+use crate::cli::conditions::Conditions;
+use crate::cli::documentation::show;
+use crate::cli::error::Error;
+use crate::cli::input::{Input, misfits};
+use crate::cli::input_files::tables;
+use crate::cli::live;
+use crate::cli::message::{Message, tell};
+use crate::cli::output::print;
+use crate::cli::page_solver;
+use crate::cli::render::render;
 use crate::drawing::animation::{fill, page_with, player};
 use crate::drawing::svg::escape;
 use crate::mechanism::Mechanism;
@@ -38,7 +38,7 @@ const STYLE: &str = include_str!("watch/watch.css");
 /// good picture. Ctrl-C ends the command.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela watch four_bar.toml")]
-pub(super) struct Watch {
+pub(in crate::cli) struct Watch {
     /// The mechanism file.
     file: PathBuf,
     #[command(flatten)]
@@ -54,7 +54,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         // An error in the file may be corrected while it is watched, one in the command not.
         if let Ok((input, _)) = read(&self.file)? {
             let start = input.mechanism.simulation.start;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::error::Error;
-use super::output::write;
-use super::stdout::STDOUT;
+use crate::cli::error::Error;
+use crate::cli::output::write;
+use crate::cli::stdout::STDOUT;
 use crate::mechanism::Mechanism;
 
 /// Print a JSON Schema (2020-12) of mechanism files; editors complete and check files with it.
@@ -15,7 +15,7 @@ use crate::mechanism::Mechanism;
 /// mechanism file turns it on.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela schema -o biela.schema.json")]
-pub(super) struct Schema {
+pub(in crate::cli) struct Schema {
     /// The file to write [default: stdout].
     #[arg(
         short,
@@ -28,7 +28,7 @@ pub(super) struct Schema {
 }
 
 impl Schema {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let text = format!("{:#}\n", Mechanism::schema());
         write(&self.output, text.as_bytes())
     }

@@ -16,16 +16,16 @@ use forces::describe_largest;
 
 use super::check::scientific;
 
-use super::bounds::{Bounds, driver_named, no_driver};
-use super::conditions::Conditions;
-use super::error::Error;
-use super::input::Input;
-use super::input_files::InputFiles;
-use super::message::Message;
-use super::output::{print, tell_written, write};
-use super::picture::Format;
-use super::plot::{MOST_BODIES, axis, panel, varies};
-use super::stdout::is_stdout;
+use crate::cli::bounds::{Bounds, driver_named, no_driver};
+use crate::cli::conditions::Conditions;
+use crate::cli::error::Error;
+use crate::cli::input::Input;
+use crate::cli::input_files::InputFiles;
+use crate::cli::message::Message;
+use crate::cli::output::{print, tell_written, write};
+use crate::cli::picture::Format;
+use crate::cli::plot::{MOST_BODIES, axis, panel, varies};
+use crate::cli::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use crate::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample};
 use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};
@@ -41,7 +41,7 @@ use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounde
 /// point to 90 deg at best; the reciprocal condition is that of `check`.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela range tlv.toml --driver side_length --plot range.svg")]
-pub(super) struct Range {
+pub(in crate::cli) struct Range {
     /// The mechanism file.
     file: PathBuf,
     /// The driver to follow [default: each in turn].
@@ -67,7 +67,7 @@ pub(super) struct Range {
 }
 
 impl Range {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
         let input = Input::read(&self.file)?;
         InputFiles::new(&self.file, &input.mechanism)
@@ -290,7 +290,7 @@ fn describe(
     text.push_str(&missing);
 }
 
-pub(super) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
+pub(in crate::cli) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
     let kind = driver.coordinate.kind;
     let value = |value: f64| with_unit(kind, value);
     match end {
@@ -325,7 +325,7 @@ pub(super) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
 }
 
 /// Formats a value in deg or m with ten decimals: limits are located to rounding.
-pub(super) fn with_unit(kind: CoordinateKind, value: f64) -> String {
+pub(in crate::cli) fn with_unit(kind: CoordinateKind, value: f64) -> String {
     let (value, unit) = in_unit(kind, value);
     let text = format!("{value:.10}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

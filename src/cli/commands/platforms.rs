@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::error::Error;
-use super::output::print;
-use super::runtime;
+use crate::cli::error::Error;
+use crate::cli::output::print;
+use crate::cli::runtime;
 use crate::fmi::Platform;
 
 /// List the platforms that exported FMUs run on.
@@ -17,7 +17,7 @@ use crate::fmi::Platform;
 /// oldest C library (glibc) that it runs with.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela platforms")]
-pub(super) struct Platforms {
+pub(in crate::cli) struct Platforms {
     /// Folder of runtime libraries, one subfolder per platform: linux64/biela.so, win64/biela.dll
     /// [default: those installed with this program].
     #[arg(long, value_name = "FOLDER")]
@@ -25,7 +25,7 @@ pub(super) struct Platforms {
 }
 
 impl Platforms {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let found = runtime::find(self.runtime.as_deref())?;
         let mut text = String::new();
         for platform in Platform::ALL {

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::error::Error;
-use super::input::{Input, warn_of_misfits};
-use super::input_files::InputFiles;
-use super::live;
-use super::output::{tell_written, write};
-use super::page_solver;
-use super::stdout::is_stdout;
+use crate::cli::error::Error;
+use crate::cli::input::{Input, warn_of_misfits};
+use crate::cli::input_files::InputFiles;
+use crate::cli::live;
+use crate::cli::output::{tell_written, write};
+use crate::cli::page_solver;
+use crate::cli::stdout::is_stdout;
 
 /// Write a page on which a mechanism is moved by hand.
 ///
@@ -23,7 +23,7 @@ use super::stdout::is_stdout;
 /// The same file gives the same page.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela page four_bar.toml -o four_bar.html")]
-pub(super) struct Page {
+pub(in crate::cli) struct Page {
     /// The mechanism file.
     file: PathBuf,
     /// The page to write, `-` for stdout [default: the mechanism's name with .html in the current
@@ -40,7 +40,7 @@ pub(super) struct Page {
 }
 
 impl Page {
-    pub(super) fn run(self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let input = Input::read(&self.file)?;
         let path = self
             .output

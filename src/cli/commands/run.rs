@@ -5,21 +5,21 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::column::Output;
-use super::conditions::{Conditions, Scenario};
-use super::csv::Csv;
-use super::error::Error;
-use super::film::{Film, FilmFile};
-use super::input::Input;
-use super::input_files::InputFiles;
-use super::message::Message;
-use super::motion::Motion;
-use super::picture::{Format, extension};
-use super::plot::Plot;
-use super::progress::Progress;
-use super::recorder::Recorder;
-use super::stdout::{STDOUT, is_stdout};
-use super::times::{Span, Times};
+use crate::cli::column::Output;
+use crate::cli::conditions::{Conditions, Scenario};
+use crate::cli::csv::Csv;
+use crate::cli::error::Error;
+use crate::cli::film::{Film, FilmFile};
+use crate::cli::input::Input;
+use crate::cli::input_files::InputFiles;
+use crate::cli::message::Message;
+use crate::cli::motion::Motion;
+use crate::cli::picture::{Format, extension};
+use crate::cli::plot::Plot;
+use crate::cli::progress::Progress;
+use crate::cli::recorder::Recorder;
+use crate::cli::stdout::{STDOUT, is_stdout};
+use crate::cli::times::{Span, Times};
 use crate::drawing::ForcePlace;
 use crate::mechanism::{Driver, DriverSource, Mechanism, rounded};
 
@@ -36,7 +36,7 @@ use crate::mechanism::{Driver, DriverSource, Mechanism, rounded};
 #[command(
     after_help = "Example: biela run four_bar.toml --drive 'crank_angle = 60*deg + 2*pi*t' --stop 1"
 )]
-pub(super) struct Run {
+pub(in crate::cli) struct Run {
     /// The mechanism file.
     file: PathBuf,
     #[command(flatten)]
@@ -89,7 +89,7 @@ const LARGE: f64 = 2e9;
 const BYTES_PER_NUMBER: f64 = 20.0;
 
 impl Run {
-    pub(super) fn run(mut self) -> Result<(), Error> {
+    pub(in crate::cli) fn run(mut self) -> Result<(), Error> {
         if self.output.is_none() && self.plot.is_none() && self.animate.is_none() {
             self.output = Some(PathBuf::from(STDOUT));
         }
