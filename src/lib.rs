@@ -83,6 +83,7 @@ pub mod cli;
 #[cfg(feature = "drawing")]
 pub mod drawing;
 #[cfg(feature = "fmi")]
+pub mod dynamics;
 pub mod fmi;
 pub mod kinematics;
 pub mod mechanism;

@@ -320,7 +320,7 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
         let kind = driver.coordinate.kind;
         let value = |value: f64| with_unit(kind, value);
         let start = match driver.source {
-            DriverSource::Input { start } => value(start),
+            DriverSource::Input { start } | DriverSource::Free { start, .. } => value(start),
             DriverSource::Motion(_) => String::new(),
         };
         let limits = match range {

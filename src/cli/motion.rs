@@ -3,6 +3,7 @@
 use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
+use crate::dynamics::{self, FreeMotion};
 use crate::kinematics::{Blocked, Curve, Error, Output, Path, Solution, Solver};
 use crate::mechanism::{DriverId, show_time};
 
@@ -15,6 +16,7 @@ pub(super) struct Motion {
     pub(super) notices: Vec<Message>,
     path: Path,
     signals: Signals,
+    free: Option<FreeMotion>,
     /// Whether a notice told of the singular position that is near.
     near_singular: bool,
     /// Whether each driver is beyond its limits.
@@ -41,11 +43,26 @@ impl Motion {
             notices: Vec::new(),
             path,
             signals,
+            free: None,
             near_singular: false,
         };
         motion.watch_limits();
         motion.solve()?;
         Ok(motion)
+    }
+
+    /// Lets freedoms, if there are some, move by the forces; they would be held otherwise.
+    pub(super) fn with_freedoms(mut self) -> Result<Self, dynamics::Error> {
+        let tolerance = self.solver.mechanism().simulation.tolerance;
+        let Some(mut free) = FreeMotion::new(&self.solver, tolerance)? else {
+            return Ok(self);
+        };
+        let held = self.solver.pose().drivers.clone();
+        let part = self.signals.part(self.solver.pose().time, &held);
+        free.start(&mut self.solver, &part)?;
+        self.free = Some(free);
+        self.solve()?;
+        Ok(self)
     }
 
     /// Solves forces too, from now on, and reactions where they are wanted.
@@ -70,6 +87,9 @@ impl Motion {
     ///
     /// Cause of the mechanism's stop, and its place.
     pub(super) fn advance(&mut self, time: f64) -> Result<(), String> {
+        if self.free.is_some() {
+            return self.advance_free(time);
+        }
         while self.solver.pose().time < time {
             let start = self.solver.pose().time;
             self.follow(self.signals.next_point(start).min(time))?;
@@ -77,6 +97,32 @@ impl Motion {
             if self.aim() {
                 self.follow(self.solver.pose().time)?;
             }
+        }
+        self.solve()
+            .map_err(|error| format!("at t = {} s: {error}", show_time(time)))
+    }
+
+    /// Moves a mechanism with freedoms on to `time`, from one point of the signals to the next.
+    fn advance_free(&mut self, time: f64) -> Result<(), String> {
+        while self.solver.pose().time < time {
+            let Self {
+                solver,
+                signals,
+                free: Some(free),
+                ..
+            } = self
+            else {
+                break;
+            };
+            let start = solver.pose().time;
+            let held = solver.pose().drivers.clone();
+            let parameters = solver.pose().parameters.clone();
+            let part = signals.part(start, &held);
+            let moved = free
+                .jump(solver, &part, &parameters)
+                .and_then(|()| free.advance(solver, &part, signals.next_point(start).min(time)));
+            moved.map_err(|stop| stop.to_string())?;
+            self.tell_passed(time);
         }
         self.solve()
             .map_err(|error| format!("at t = {} s: {error}", show_time(time)))
@@ -90,6 +136,9 @@ impl Motion {
             if let Some(signal) = self.signals.at(DriverId(driver), time) {
                 *rates = signal;
             }
+        }
+        if let Some(free) = &self.free {
+            self.solution.driver_rates.copy_from_slice(free.drivers());
         }
         if self.solution.forces().is_some() {
             self.signals.write_forces(time, &mut self.solution.loads);
@@ -131,6 +180,12 @@ impl Motion {
         if let Err(blocked) = self.solver.track(&self.path) {
             return Err(self.describe(&blocked));
         }
+        self.tell_passed(time);
+        Ok(())
+    }
+
+    /// Notes singular positions that are near or were passed, and drivers beyond their limits.
+    fn tell_passed(&mut self, time: f64) {
         if let Some(approach) = self.solver.approach(&mut self.near_singular) {
             let notice = format!("t = {} s: {approach}", show_time(time));
             self.notices.push(Message::Warning(notice));
@@ -141,7 +196,6 @@ impl Motion {
             self.notices.push(Message::Note(notice));
         }
         self.watch_limits();
-        Ok(())
     }
 
     /// Notes drivers that go beyond their limits.

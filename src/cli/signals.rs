@@ -4,6 +4,7 @@ mod file;
 
 use std::f64::consts::TAU;
 
+use crate::dynamics::Given;
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism, Order};
 
 /// Values of drivers and of inputs of forces over time: linear between two points, constant before
@@ -101,6 +102,16 @@ impl Signals {
         }
     }
 
+    /// Returns the values from `start`, a time or a point, up to the next point; drivers without a
+    /// signal stay at these values.
+    pub(super) fn part<'a>(&'a self, start: f64, held: &'a [f64]) -> Part<'a> {
+        Part {
+            signals: self,
+            start,
+            held,
+        }
+    }
+
     /// Returns the time of the first point after `time`; infinity after the last.
     pub(super) fn next_point(&self, time: f64) -> f64 {
         let after = self.points_until(time);
@@ -125,6 +136,47 @@ impl Signals {
         let slope = (values[after] - values[before]) / (end - start);
         let elapsed = if same(time, start) { 0.0 } else { time - start };
         Jet::new(values[before] + elapsed * slope, [slope, 0.0])
+    }
+}
+
+/// The values between two points, continued at both as they are between them.
+pub(super) struct Part<'a> {
+    signals: &'a Signals,
+    start: f64,
+    held: &'a [f64],
+}
+
+impl Part<'_> {
+    fn line(&self, values: &[f64], time: f64) -> Jet {
+        let line = self.signals.interpolate(values, self.start);
+        Jet::new(
+            line.value + (time - self.start) * line.first(),
+            line.derivatives,
+        )
+    }
+}
+
+impl Given for Part<'_> {
+    fn driver(&self, driver: DriverId, time: f64) -> Jet {
+        let Some(positions) = self.signals.of(driver, Order::Position) else {
+            return Jet::constant(self.held[driver.index()]);
+        };
+        let mut jet = self.line(positions, time);
+        let orders = [Order::Velocity, Order::Acceleration];
+        for (rate, order) in jet.derivatives.iter_mut().zip(orders) {
+            if let Some(rates) = self.signals.of(driver, order) {
+                *rate = self.line(rates, time).value;
+            }
+        }
+        jet
+    }
+
+    fn loads(&self, time: f64, loads: &mut [f64]) {
+        for (target, values) in &self.signals.columns {
+            if let Target::Force(input) = *target {
+                loads[input] = self.line(values, time).value;
+            }
+        }
     }
 }
 

@@ -45,6 +45,12 @@ pub trait Codec {
         Ok(())
     }
 
+    /// Visits 64 bits.
+    fn word(&mut self, value: &mut u64) -> Result<(), Unreadable> {
+        *value = u64::from_le_bytes(self.bytes(value.to_le_bytes())?);
+        Ok(())
+    }
+
     /// Visits an index or a length.
     fn index(&mut self, value: &mut usize) -> Result<(), Unreadable> {
         let bytes = self.bytes((*value as u64).to_le_bytes())?;

@@ -183,11 +183,13 @@ pub enum Error {
         /// The number of the kind.
         kind: u32,
     },
-    /// The model has no continuous states and no event indicators.
-    #[error("called for {given} values, and there are none")]
+    /// The model has another number of continuous states or event indicators.
+    #[error("called for {given} values, and there are {}", if *.expected == 0 { "none".to_owned() } else { .expected.to_string() })]
     Continuous {
         /// The number of values.
         given: usize,
+        /// The number of states or indicators.
+        expected: usize,
     },
     /// A communication point, step size, time or stop time is impossible.
     #[error("{message}")]

@@ -209,6 +209,12 @@ pub trait Model: Sized {
         unreachable!("{quantity:?} is a Real unless a model overrides this")
     }
 
+    /// Returns the usual magnitude of a continuous state.
+    fn nominal(&self, quantity: Self::Quantity) -> f64 {
+        let _ = quantity;
+        1.0
+    }
+
     /// Returns the directional derivative of each unknown: the sum over `knowns` of
     /// ∂unknown/∂known times the known's change. Unknowns are outputs and, in initialization,
     /// calculated parameters; knowns are inputs and, in initialization, parameters.

@@ -34,10 +34,20 @@ pub enum Causality {
     Input,
     /// Computed for the host.
     Output,
+    /// An output that is a continuous state: the host sets its start and, in model exchange, its value.
+    State,
     /// Computed; describes the solver rather than the model.
     Local,
     /// Time.
     Independent,
+}
+
+impl Causality {
+    /// Returns whether the variable is an output.
+    #[must_use]
+    pub fn is_output(self) -> bool {
+        matches!(self, Self::Output | Self::State)
+    }
 }
 
 /// FMI variability.
@@ -103,6 +113,13 @@ pub fn value_reference(place: usize) -> u32 {
 #[inline]
 pub(super) fn place(value_reference: u32) -> usize {
     (value_reference as usize).wrapping_sub(1)
+}
+
+/// Returns the places of the continuous states.
+pub(super) fn states<Q>(variables: &[Variable<Q>]) -> Box<[usize]> {
+    let all = variables.iter().enumerate();
+    let states = all.filter(|(_, variable)| variable.causality == Causality::State);
+    states.map(|(place, _)| place).collect()
 }
 
 /// Returns the place of each variable's time derivative.

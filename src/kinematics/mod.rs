@@ -80,7 +80,8 @@ pub use constraint::configuration::{
 pub use continuation::{Blocked, Progress, Reason};
 pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Verdict};
 pub use forces::{
-    ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff, Reported,
+    EquationsOfMotion, ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff,
+    Reported,
 };
 pub use linear::PivotOrder;
 pub use origin::Origin;

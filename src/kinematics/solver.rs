@@ -8,7 +8,9 @@ use super::analysis::{
 use super::assembly::estimate::{Move, estimate, moves};
 use super::continuation::{Blocked, PathTracker, Progress};
 use super::error::Error;
-use super::forces::{self, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
+use super::forces::{
+    self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff,
+};
 use super::origin::Origin;
 use super::path::{Curve, Path, Rates};
 use super::plan::Crossing;
@@ -98,6 +100,12 @@ impl Solver {
     #[must_use]
     pub fn structure(&self) -> &Structure {
         &self.compiled.structure
+    }
+
+    /// Returns the mechanism's characteristic length at the pose \[m\].
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.state.at.size()
     }
 
     /// Returns the pose.
@@ -419,6 +427,31 @@ impl Solver {
         forces: &mut Forces,
     ) -> Result<(), Error> {
         forces.solve(&mut self.compiled, &mut self.state, motion, parts)
+    }
+
+    /// Makes the storage for the equations of motion.
+    #[must_use]
+    pub fn equations_of_motion(&self) -> EquationsOfMotion {
+        EquationsOfMotion::new(self.state.pose.q.len(), self.state.pose.drivers.len())
+    }
+
+    /// Writes the equations of motion in the coordinates of the drivers at the present pose, for
+    /// these velocities of theirs and these inputs of forces. Allocates nothing.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`solve_rates`](Self::solve_rates) and [`solve_forces`](Self::solve_forces).
+    pub fn write_equations(
+        &mut self,
+        velocity: impl Fn(DriverId) -> f64,
+        inputs: &[f64],
+        forces: &mut Forces,
+        equations: &mut EquationsOfMotion,
+    ) -> Result<(), Error> {
+        let Self {
+            compiled, state, ..
+        } = self;
+        forces.write_equations(compiled, state, velocity, inputs, equations)
     }
 
     /// Returns the rounding error of a driver's effort \[N or N m\]: a smaller effort cannot be told

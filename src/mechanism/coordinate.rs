@@ -40,9 +40,11 @@ impl Mechanism {
     /// Lets freedoms without a start begin at the values that the estimates give.
     pub(super) fn start_at_estimates(&mut self) {
         let parameters = self.default_parameters();
-        let starts: Vec<_> = self.drivers.iter().map(|driver| {
-            self.estimated(driver.coordinate, &parameters)
-        }).collect();
+        let starts: Vec<_> = self
+            .drivers
+            .iter()
+            .map(|driver| self.estimated(driver.coordinate, &parameters))
+            .collect();
         for (driver, estimated) in self.drivers.iter_mut().zip(starts) {
             if let DriverSource::Free { start, .. } = &mut driver.source
                 && start.is_nan()

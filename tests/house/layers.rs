@@ -15,16 +15,28 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 
 /// The layers, and those that each may use.
-const LAYERS: [(&str, &[&str]); 7] = [
+const LAYERS: [(&str, &[&str]); 8] = [
     ("unit", &[]),
     ("mechanism", &["unit"]),
     ("kinematics", &["unit", "mechanism"]),
+    ("dynamics", &["unit", "mechanism", "kinematics"]),
     ("drawing", &["unit", "mechanism", "kinematics"]),
-    ("page", &["unit", "mechanism", "kinematics", "drawing"]),
-    ("fmi", &["unit", "mechanism", "kinematics"]),
+    (
+        "page",
+        &["unit", "mechanism", "kinematics", "dynamics", "drawing"],
+    ),
+    ("fmi", &["unit", "mechanism", "kinematics", "dynamics"]),
     (
         "cli",
-        &["unit", "mechanism", "kinematics", "drawing", "page", "fmi"],
+        &[
+            "unit",
+            "mechanism",
+            "kinematics",
+            "dynamics",
+            "drawing",
+            "page",
+            "fmi",
+        ],
     ),
 ];
 

@@ -155,6 +155,7 @@ fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
         let source = match driver.source {
             DriverSource::Input { .. } => "input",
             DriverSource::Motion(_) => "prescribed motion",
+            DriverSource::Free { .. } => "free",
         };
         format!("{} ({source})", driver.name)
     });

@@ -151,7 +151,11 @@ impl Run {
         if asks_forces {
             motion = motion.and_then(|motion| motion.with_forces(asks_reactions));
         }
-        let mut motion = motion.map_err(|error| input.error_at(times.start, &error))?;
+        let motion = motion.map_err(|error| input.error_at(times.start, &error))?;
+        let mut motion = motion.with_freedoms().map_err(|why| Error::Stopped {
+            file: input.source.name().to_owned(),
+            why: why.to_string(),
+        })?;
         if let Some(path) = self.animate.clone() {
             let mut film = Film::new(told, times.steps, [times.start, times.step]);
             if self.forces {

@@ -1,4 +1,4 @@
-//! Model exchange for models without continuous states and event indicators.
+//! Model exchange for models without event indicators.
 
 use super::{Category, Error, Failure, Instance, Status, check_finite};
 use crate::fmi::model::Model;
@@ -108,17 +108,110 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Answers a function of continuous states or event indicators, for `count` values.
+    /// Answers a function of event indicators, for `count` values.
     ///
     /// # Errors
     ///
     /// `count` is not zero: the model has none.
-    pub fn continuous(&self, call: Call, count: usize) -> Result<(), Error> {
-        self.allow(call)?;
-        if count == 0 {
-            Ok(())
-        } else {
-            Err(Error::Continuous { given: count })
+    pub fn event_indicators(&self, count: usize) -> Result<(), Error> {
+        self.allow(Call::GetEventIndicators)?;
+        check_count(count, 0)
+    }
+
+    /// `fmi3GetNumberOfContinuousStates`.
+    ///
+    /// # Errors
+    ///
+    /// The state forbids the call.
+    pub fn number_of_states(&self) -> Result<usize, Error> {
+        self.allow(Call::GetNumberOfContinuousStates)?;
+        Ok(self.states.len())
+    }
+
+    /// `fmi2SetContinuousStates`, `fmi3SetContinuousStates`: sets all states or none.
+    ///
+    /// # Errors
+    ///
+    /// There is another number of states, or a value is not finite.
+    pub fn set_continuous_states(&mut self, values: &[f64]) -> Result<(), Error> {
+        self.allow(Call::SetContinuousStates)?;
+        check_count(values.len(), self.states.len())?;
+        for (place, value) in self.states.iter().zip(values) {
+            check_finite(&self.model.variables()[*place].name, *value)?;
         }
+        let Self {
+            model,
+            states,
+            quantities,
+            ..
+        } = self;
+        let places = states.iter().zip(values);
+        model.set_reals(places.map(|(place, value)| (quantities[*place], *value)));
+        Ok(())
+    }
+
+    /// `fmi2GetContinuousStates`, `fmi3GetContinuousStates`: returns the values of all states, for a
+    /// host that asks for `count`.
+    ///
+    /// # Errors
+    ///
+    /// There is another number of states; or they have no value.
+    pub fn continuous_states(&mut self, count: usize) -> Result<impl Iterator<Item = f64>, Error> {
+        self.allow(Call::GetContinuousStates)?;
+        self.of_states(Call::GetContinuousStates, count, |_, state| state)
+    }
+
+    /// `fmi2GetDerivatives`, `fmi3GetContinuousStateDerivatives`: returns the time derivatives of all
+    /// states, for a host that asks for `count`.
+    ///
+    /// # Errors
+    ///
+    /// There is another number of states; or the derivatives do not exist.
+    pub fn derivatives_of_states(
+        &mut self,
+        count: usize,
+    ) -> Result<impl Iterator<Item = f64>, Error> {
+        self.allow(Call::GetDerivatives)?;
+        self.of_states(Call::GetDerivatives, count, |instance, state| {
+            instance.derivatives[state].expect("a state has a derivative")
+        })
+    }
+
+    /// `fmi2GetNominalsOfContinuousStates`, `fmi3GetNominalsOfContinuousStates`: returns the usual
+    /// magnitude of each state, for a host that asks for `count`.
+    ///
+    /// # Errors
+    ///
+    /// There is another number of states.
+    pub fn nominals(&self, count: usize) -> Result<impl Iterator<Item = f64>, Error> {
+        self.allow(Call::GetNominalsOfContinuousStates)?;
+        check_count(count, self.states.len())?;
+        let states = self.states.iter();
+        Ok(states.map(|place| self.model.nominal(self.quantities[*place])))
+    }
+
+    /// Returns a Real for each state, at the place that `real` returns for that of the state.
+    fn of_states(
+        &mut self,
+        call: Call,
+        count: usize,
+        real: impl Fn(&Self, usize) -> usize,
+    ) -> Result<impl Iterator<Item = f64>, Error> {
+        check_count(count, self.states.len())?;
+        let places = self.states.iter().map(|state| real(self, *state));
+        let groups = places.fold(0, |groups, place| groups | self.groups[place]);
+        self.refresh(call, groups)?;
+        let instance = &*self;
+        let states = instance.states.iter();
+        Ok(states.map(move |state| instance.model.reals()[real(instance, *state)]))
+    }
+}
+
+/// Checks the number of values that a host gives or asks for.
+fn check_count(given: usize, expected: usize) -> Result<(), Error> {
+    if given == expected {
+        Ok(())
+    } else {
+        Err(Error::Continuous { given, expected })
     }
 }

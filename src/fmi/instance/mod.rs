@@ -36,7 +36,7 @@ use super::log::{Category, Logger, Sink};
 use super::model::{Groups, Model};
 use super::state::{Allowed, Call, Interface, Phase, State, Version, allowed, is_allowed};
 use super::status::Status;
-use super::variable::{Variable, derivatives};
+use super::variable::{Variable, derivatives, states};
 use fmu_state::Course;
 use step_mode::PendingStep;
 use values::{Request, groups_of, is_continuous_input};
@@ -58,6 +58,8 @@ pub struct Instance<M: Model> {
     derivatives: Box<[Option<usize>]>,
     /// Whether each variable is an input that accepts any finite value at any time.
     continuous_inputs: Box<[bool]>,
+    /// The places of the continuous states.
+    states: Box<[usize]>,
     version: Version,
     interface: Interface,
     /// Calls that each state allows.
@@ -119,6 +121,7 @@ impl<M: Model> Instance<M> {
             derivatives: derivatives(variables),
             quantities: variables.iter().map(|v| v.quantity).collect(),
             groups: variables.iter().map(groups).collect(),
+            states: states(variables),
             continuous_inputs: variables.iter().map(is_continuous_input).collect(),
             guid: model.guid().into(),
             version,

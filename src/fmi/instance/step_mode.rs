@@ -76,7 +76,7 @@ impl<M: Model> Instance<M> {
         let mut intermediate = vec![false; self.variables().len()];
         for &value_reference in &co_simulation.required_intermediate_variables {
             let variable = self.variable(value_reference)?;
-            let crosses = matches!(variable.causality, Causality::Input | Causality::Output);
+            let crosses = variable.causality == Causality::Input || variable.causality.is_output();
             if !(crosses && variable.kind.is_real()) {
                 let name = variable.name.clone();
                 return Err(Error::NotIntermediate { name });
@@ -321,7 +321,12 @@ impl<M: Model> Instance<M> {
     pub(super) fn check_readable(&self, value_references: &[u32]) -> Result<(), Error> {
         match self.course.state {
             State::Instantiated => {
-                let has_start = |c| matches!(c, Causality::Parameter | Causality::Input);
+                let has_start = |c| {
+                    matches!(
+                        c,
+                        Causality::Parameter | Causality::Input | Causality::State
+                    )
+                };
                 self.refuse(
                     value_references,
                     |c| !has_start(c),
@@ -329,7 +334,7 @@ impl<M: Model> Instance<M> {
                 )
             }
             State::StepMode if self.course.set_since_step => {
-                let is_computed = |c| matches!(c, Causality::Output | Causality::Local);
+                let is_computed = |c: Causality| c.is_output() || c == Causality::Local;
                 self.refuse(value_references, is_computed, |name| Error::NotStepped {
                     name,
                 })

@@ -256,7 +256,7 @@ impl<M: Model> Instance<M> {
         for (&value_reference, &order) in entries.clone() {
             let variable = self.variable(value_reference)?;
             let name = || variable.name.clone();
-            if variable.causality != Causality::Output {
+            if !variable.causality.is_output() {
                 return Err(Error::NotOutput { name: name() });
             }
             let highest = M::CAPABILITIES.output_derivatives;
@@ -285,7 +285,7 @@ impl<M: Model> Instance<M> {
     }
 
     #[inline(always)]
-    fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
+    pub(super) fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
         let phase = self.course.state.phase(self.interface);
         self.model
             .refresh(groups, phase, &self.logger)
@@ -338,7 +338,7 @@ impl<M: Model> Instance<M> {
                 return Ok(variable);
             }
             Causality::Input => "a discrete input, which changes in event mode",
-            Causality::Parameter if initializing => return Ok(variable),
+            Causality::Parameter | Causality::State if initializing => return Ok(variable),
             Causality::Parameter if variable.variability == Variability::Fixed => {
                 "a fixed parameter, and initialization has ended"
             }
@@ -348,6 +348,7 @@ impl<M: Model> Instance<M> {
             Causality::Parameter => return Ok(variable),
             Causality::CalculatedParameter => "a parameter derived from others",
             Causality::Output => "an output",
+            Causality::State => "a state, and initialization has ended",
             Causality::Local => "about the solver",
             Causality::Independent => "the time",
         };

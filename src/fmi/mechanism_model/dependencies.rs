@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::MechanismModel;
 use super::variables::Quantity;
 use crate::fmi::model_description::DependencyKind;
-use crate::fmi::variable::{Causality, Variable, place, value_reference};
+use crate::fmi::variable::{Causality, Variable, place, states, value_reference};
 use crate::kinematics::{Dependencies, ForceQuantity, OutputSource, Structure};
 use crate::mechanism::{Coordinate, DriverId, Load, Mechanism, Order, Signal, Variable as Of};
 
@@ -29,6 +29,8 @@ pub(super) struct DependencyTable<'a> {
     structure: &'a Structure,
     /// Value references of all variables but outputs.
     references: HashMap<Quantity, u32>,
+    /// Value references of the continuous states.
+    states: Vec<u32>,
 }
 
 impl<'a> DependencyTable<'a> {
@@ -42,6 +44,10 @@ impl<'a> DependencyTable<'a> {
         Self {
             mechanism,
             structure,
+            states: states(variables)
+                .iter()
+                .map(|place| value_reference(*place))
+                .collect(),
             references: known
                 .map(|(place, variable)| (variable.quantity, value_reference(place)))
                 .collect(),
@@ -52,15 +58,32 @@ impl<'a> DependencyTable<'a> {
     /// variables.
     pub(super) fn of(&self, unknown: Quantity) -> Option<KnownVariables> {
         let order = self.order(unknown)?;
-        let origins = self.origins(unknown);
+        let mut origins = self.origins(unknown);
+        let mut force = unknown;
+        if let Some(freedom) = self.accelerated(&origins, order) {
+            // Its acceleration follows from all forces.
+            let effort = ForceQuantity::Effort(freedom);
+            force = Quantity::Output(OutputSource::Force(effort));
+            self.add_origins(effort, &mut origins);
+            origins
+                .drivers
+                .extend((0..self.mechanism.drivers.len()).map(DriverId));
+        }
         let has_input = origins.drivers.iter().any(|id| self.is_input(*id));
-        let of_forces: Kinds = self.dependent(self.inputs_of_forces(unknown)).collect();
+        let of_forces: Kinds = self.dependent(self.inputs_of_forces(force)).collect();
         let own: Kinds = self
             .dependent(self.parameters(unknown, &origins, order))
             .collect();
 
         // Nothing is extrapolated in initialization mode.
-        let mut initial: Kinds = self.dependent(self.inputs(&origins, order)).collect();
+        let mut initial: Kinds = self
+            .dependent(self.inputs(&origins, order, unknown))
+            .collect();
+        let states: Kinds = initial
+            .iter()
+            .filter(|(vr, _)| self.states.contains(vr))
+            .map(|(vr, kind)| (*vr, *kind))
+            .collect();
         let angle = self.driver_angle(unknown);
         let angle = angle.and_then(|id| self.references.get(&Quantity::Input(id, Order::Position)));
         initial.extend(angle.map(|vr| (*vr, DependencyKind::Constant)));
@@ -71,8 +94,10 @@ impl<'a> DependencyTable<'a> {
 
         // Estimated rates depend on positions, extrapolated positions on rates.
         let mut inputs: Kinds = self
-            .dependent(self.inputs(&origins, Order::Acceleration))
+            .dependent(self.inputs(&origins, Order::Acceleration, unknown))
+            .filter(|(vr, _)| !self.states.contains(vr))
             .collect();
+        inputs.extend(states);
         inputs.extend(of_forces);
         let mut parameters = own;
         if has_input {
@@ -121,11 +146,32 @@ impl<'a> DependencyTable<'a> {
         found.map(|vr| (*vr, DependencyKind::Dependent))
     }
 
-    /// Returns the inputs of drivers up to an order, and the time for prescribed motions.
-    fn inputs(&self, origins: &Dependencies, highest: Order) -> Vec<Quantity> {
+    /// Returns the first freedom whose acceleration a quantity of an order contains.
+    fn accelerated(&self, origins: &Dependencies, order: Order) -> Option<DriverId> {
+        let is_free = |id: &&DriverId| self.mechanism.drivers[id.index()].is_free();
+        let mut freedoms = origins.drivers.iter().filter(is_free);
+        freedoms
+            .next()
+            .copied()
+            .filter(|_| order == Order::Acceleration)
+    }
+
+    /// Returns the inputs of drivers and the states of freedoms up to an order, and the time for
+    /// prescribed motions.
+    fn inputs(&self, origins: &Dependencies, highest: Order, unknown: Quantity) -> Vec<Quantity> {
         let mut inputs = Vec::new();
         for &id in &origins.drivers {
-            if self.is_input(id) {
+            if self.mechanism.drivers[id.index()].is_free() {
+                let state =
+                    |order| Quantity::Output(OutputSource::Signal(Signal::Motion(id), order));
+                let orders = [Order::Position, Order::Velocity].map(state);
+                if orders.contains(&unknown) {
+                    inputs.push(unknown);
+                    continue;
+                }
+                let count = if highest == Order::Position { 1 } else { 2 };
+                inputs.extend(&orders[..count]);
+            } else if self.is_input(id) {
                 let orders = Order::ALL.into_iter().filter(|order| *order <= highest);
                 inputs.extend(orders.map(|order| Quantity::Input(id, order)));
             } else {
@@ -136,7 +182,8 @@ impl<'a> DependencyTable<'a> {
     }
 
     fn is_input(&self, driver: DriverId) -> bool {
-        self.mechanism.drivers[driver.index()].motion().is_none()
+        let driver = &self.mechanism.drivers[driver.index()];
+        driver.motion().is_none() && !driver.is_free()
     }
 
     /// Returns the inputs of forces, and the time if forces depend on it, for a force.
@@ -283,7 +330,7 @@ impl MechanismModel {
             ..
         } = self.variables[place(value_reference)];
         let mut known = table.of(quantity).unwrap_or_default();
-        if causality == Causality::Output && !initializing {
+        if causality.is_output() && !initializing {
             known.inputs.extend(known.parameters);
             known.inputs.into_iter().collect()
         } else {

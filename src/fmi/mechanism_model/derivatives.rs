@@ -4,8 +4,8 @@ use super::{MechanismModel, Quantity, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
-use crate::kinematics::{Direction, OutputSource, Solution};
-use crate::mechanism::{DriverId, Order};
+use crate::kinematics::{Direction, ForceQuantity, OutputSource, Solution};
+use crate::mechanism::{DriverId, Order, Signal};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
@@ -45,9 +45,17 @@ impl MechanismModel {
                     direction.parameters[parameter.index()] += change;
                 }
                 Quantity::Time => direction.time += change,
-                _ => unreachable!("knowns are inputs, parameters and time"),
+                Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order)) => {
+                    let state = &mut direction.drivers[freedom.index()];
+                    match order {
+                        Order::Position => state.value += change,
+                        _ => state.derivatives[0] += change,
+                    }
+                }
+                _ => unreachable!("knowns are inputs, states, parameters and time"),
             }
         }
+        self.accelerate_freedoms(&mut direction, &loads)?;
         let is_force = |u: &Quantity| matches!(u, Quantity::Output(OutputSource::Force(_)));
         let of_forces = if unknowns.iter().any(is_force) {
             self.set_loads();
@@ -75,6 +83,31 @@ impl MechanismModel {
         };
         let changes: Result<_, _> = unknowns.iter().map(change).collect();
         changes.map_err(without_value)
+    }
+
+    /// Completes a direction by the changes of the freedoms' accelerations: their efforts stay zero.
+    fn accelerate_freedoms(
+        &mut self,
+        direction: &mut Direction,
+        loads: &[f64],
+    ) -> Result<(), Failure> {
+        let Some(free) = &mut self.free else {
+            return Ok(());
+        };
+        let changes = (self.solution).force_changes(&mut self.solver, direction, loads);
+        let Some(changes) = changes.map_err(without_value)? else {
+            return Ok(());
+        };
+        let efforts = free.freedoms().iter();
+        let efforts = efforts.map(|freedom| changes.change(ForceQuantity::Effort(*freedom)));
+        let efforts: Result<Vec<f64>, _> = efforts.collect();
+        let efforts = efforts.map_err(without_value)?;
+        let mut accelerations = vec![0.0; efforts.len()];
+        free.accelerate(&efforts, &mut accelerations);
+        for (freedom, acceleration) in free.freedoms().iter().zip(accelerations) {
+            direction.drivers[freedom.index()].derivatives[1] = acceleration;
+        }
+        Ok(())
     }
 
     /// Returns the derivatives of a driver's value, velocity and acceleration in force by one of its

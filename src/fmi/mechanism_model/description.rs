@@ -35,18 +35,27 @@ pub(super) fn describe_without<'a>(
     set_nominal(mechanism, &mut variables);
     let table = DependencyTable::new(mechanism, structure, &variables);
     let mut outputs = Vec::new();
+    let mut derivatives = Vec::new();
     let mut initial_unknowns = Vec::new();
     for (place, variable) in variables.iter().enumerate() {
         let value_reference = value_reference(place);
         let Some(known) = table.of(variable.quantity) else {
             continue;
         };
-        if variable.causality == Causality::Output {
-            outputs.push(Unknown {
+        if variable.causality.is_output() {
+            let unknown = Unknown {
                 value_reference,
                 dependencies: known.inputs,
                 parameters: known.parameters,
-            });
+            };
+            let of = variable.derivative_of.map(|of| variables[of].causality);
+            if of == Some(Causality::State) {
+                derivatives.push(unknown.clone());
+            }
+            outputs.push(unknown);
+        }
+        if variable.causality == Causality::State {
+            continue;
         }
         initial_unknowns.push(Unknown {
             value_reference,
@@ -74,6 +83,7 @@ pub(super) fn describe_without<'a>(
         terminals: terminals(mechanism, &variables),
         variables,
         outputs,
+        derivatives,
         initial_unknowns,
     }
 }
@@ -83,7 +93,7 @@ pub(super) fn describe_without<'a>(
 fn terminals(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Vec<Terminal> {
     let drivers = mechanism.drivers.iter().map(|driver| {
         let description = if driver.description.is_empty() {
-            format!("driver `{}`", driver.name)
+            format!("{} `{}`", driver.noun(), driver.name)
         } else {
             driver.description.clone()
         };
@@ -97,7 +107,7 @@ fn terminals(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Vec<Ter
     let terminals = drivers.chain(markers).map(|(name, description)| {
         let members = variables.iter().filter_map(|variable| {
             let member = variable.name.strip_prefix(&name)?.strip_prefix('.')?;
-            let crosses = matches!(variable.causality, Causality::Input | Causality::Output);
+            let crosses = variable.causality == Causality::Input || variable.causality.is_output();
             (crosses && !member.contains('.')).then(|| Member {
                 name: member.to_owned(),
                 variable: variable.name.clone(),

@@ -34,10 +34,16 @@ impl ForceInput {
         self.derivatives[order - 1] = value;
     }
 
+    /// Returns the value a time `tau` after the start of the next step.
+    pub(super) fn after(&self, tau: f64) -> f64 {
+        let [first, second] = self.derivatives;
+        self.value + tau * (first + 0.5 * tau * second)
+    }
+
     /// Goes on for a time `h` on the path, whose derivatives are then used up.
     pub(super) fn advance(&mut self, h: f64) {
-        let [first, second] = std::mem::take(&mut self.derivatives);
-        self.present = self.value + h * (first + 0.5 * h * second);
+        self.present = self.after(h);
+        self.derivatives = [0.0; 2];
     }
 
     /// Visits all fields.

@@ -10,6 +10,7 @@
 //! | `input` | one driver's inputs: their path during a step and their rates |
 //! | `force_input` | one input of a force |
 //! | `forces` | forces at the pose, and contacts that lift off |
+//! | `free` | the motion of freedoms |
 //! | `monitor` | one driver's observations: contradictions, falls, limits |
 //! | `parts` | a step in parts, between which the host sets inputs |
 //! | `pose` | initialization, steps, and the pose and rates of the values set |
@@ -23,6 +24,7 @@ mod derivatives;
 mod description;
 mod force_input;
 mod forces;
+mod free;
 mod guid;
 mod history;
 mod input;
@@ -52,11 +54,14 @@ use super::model::{Groups, Model};
 use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
+use crate::dynamics::{FreeMotion, FreeState};
 use crate::kinematics::{
-    self, Forces, Origin, Path, Pose, Progress, Solution, Solver, SolverChoices, omitted_reactions,
+    self, Forces, Origin, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
+    omitted_reactions,
 };
 use crate::mechanism::{
-    DriverId, DriverSource, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource,
+    Driver, DriverId, DriverSource, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource,
+    Signal, rounded,
 };
 use force_input::ForceInput;
 use guid::guid_without;
@@ -83,6 +88,8 @@ pub struct MechanismModel {
     solution: Solution,
     reals: Reals,
     path: Path,
+    /// The motion of freedoms, if the mechanism has some.
+    free: Option<FreeMotion>,
     /// The step that is being taken in parts.
     parts: Option<Box<Parts>>,
     /// Time of the dead point in front of which the last step has stopped.
@@ -116,6 +123,8 @@ struct Course {
     inputs: Vec<DriverInput>,
     /// Inputs of forces, in the order of their variables.
     force_inputs: Vec<ForceInput>,
+    /// The motion of freedoms at the committed pose.
+    free: Option<FreeState>,
     /// Whether each contact pulled at the last communication point.
     lifted: Vec<bool>,
     /// Observations per driver.
@@ -135,15 +144,11 @@ impl Course {
         solution: &Solution,
         start: &Arc<Pose>,
         choices: &SolverChoices,
+        free: Option<FreeState>,
     ) -> Self {
         let drivers = mechanism.drivers.len();
         let contacts = solution.forces().map_or(0, Forces::contacts);
-        let start_of = |source: &DriverSource| match source {
-            DriverSource::Input { start } => *start,
-            DriverSource::Motion(_) => 0.0,
-        };
-        let inputs = mechanism.drivers.iter();
-        let inputs = inputs.map(|driver| DriverInput::new(start_of(&driver.source)));
+        let inputs = mechanism.drivers.iter().map(start_input);
         Self {
             time: start.time,
             start_pose: Arc::clone(start),
@@ -160,6 +165,7 @@ impl Course {
             sources: vec![[Source::default(); 2]; drivers],
             inputs: inputs.collect(),
             force_inputs: vec![ForceInput::default(); solution.loads.len()],
+            free,
             lifted: vec![false; contacts],
             monitors: vec![Monitor::default(); drivers],
             near_singular: false,
@@ -167,6 +173,15 @@ impl Course {
             progress: Progress::default(),
         }
     }
+}
+
+/// Returns the inputs of a driver at its start; a freedom's are its states.
+fn start_input(driver: &Driver) -> DriverInput {
+    let mut input = DriverInput::new(driver.start().unwrap_or(0.0));
+    if let DriverSource::Free { velocity, .. } = driver.source {
+        input.set(Order::Velocity, velocity);
+    }
+    input
 }
 
 /// Validity of the solver's pose and rates.
@@ -207,14 +222,19 @@ impl MechanismModel {
         if mechanism.has_dynamics() {
             solution.seek_forces(&solver);
         }
+        let tolerance = mechanism.simulation.tolerance;
+        // The reader admits no tolerance that the integrator refuses.
+        let free = FreeMotion::new(&solver, tolerance).unwrap_or_default();
         let variables = variables_without(&mechanism, omitted);
+        let free_state = free.as_ref().map(FreeMotion::state);
         Ok(Self {
             guid: guid_without(&mechanism, omitted),
             interface,
             reals: Reals::new(&mechanism, &variables),
             variables,
-            course: Course::new(&mechanism, &solution, &file_pose, &file_choices),
+            course: Course::new(&mechanism, &solution, &file_pose, &file_choices, free_state),
             solution,
+            free,
             file_choices,
             path,
             parts: None,
@@ -259,6 +279,9 @@ impl MechanismModel {
     /// Sets an input of a force, on which no pose depends.
     fn set_force_input(&mut self, place: usize, value: f64) {
         self.course.force_inputs[place].set(value);
+        if self.free.is_some() {
+            self.set_freshness(self.course.freshness.min(Freshness::Pose));
+        }
         self.reals.invalidate();
     }
 
@@ -316,7 +339,8 @@ impl Model for MechanismModel {
 
     fn reset(&mut self) {
         let (start, choices) = (&self.file_pose, &self.file_choices);
-        self.course = Course::new(&self.mechanism, &self.solution, start, choices);
+        let free = self.free.as_ref().map(FreeMotion::state);
+        self.course = Course::new(&self.mechanism, &self.solution, start, choices, free);
         self.return_to_committed();
         self.solution.driver_rates.fill(Jet::constant(0.0));
         self.reals.invalidate();
@@ -334,7 +358,10 @@ impl Model for MechanismModel {
                     self.set_parameter(parameter, value);
                     parameters_changed = true;
                 }
-                _ => unreachable!("only inputs and parameters are settable"),
+                Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order)) => {
+                    self.set_input(freedom, order, value);
+                }
+                _ => unreachable!("only inputs, states and parameters are settable"),
             }
         }
         if parameters_changed {
@@ -397,6 +424,20 @@ impl Model for MechanismModel {
             _ => unreachable!("all other variables are Reals"),
         };
         i32::try_from(count).unwrap_or(i32::MAX)
+    }
+
+    fn nominal(&self, quantity: Quantity) -> f64 {
+        let kind = match quantity {
+            Quantity::Output(OutputSource::Signal(Signal::Motion(driver), _)) => {
+                self.mechanism.drivers[driver.index()].coordinate.kind
+            }
+            _ => unreachable!("states are freedoms"),
+        };
+        if kind.is_angle() {
+            1.0
+        } else {
+            rounded(self.solver.size(), 1)
+        }
     }
 
     fn directional_derivatives(
@@ -470,11 +511,11 @@ impl Model for MechanismModel {
 }
 
 /// Converts an error of the kinematics.
-fn failed(error: kinematics::Error) -> Failure {
+fn failed(error: impl ToString) -> Failure {
     Failure::Failed(error.to_string())
 }
 
 /// Converts an error of the kinematics about values that do not exist at the present pose.
-fn without_value(error: kinematics::Error) -> Failure {
+fn without_value(error: impl ToString) -> Failure {
     Failure::Discarded(error.to_string())
 }

@@ -227,6 +227,10 @@ impl MechanismModel {
 
     /// Follows the path that is set.
     fn follow(&mut self, log: &Logger) -> Result<(), Failure> {
+        if self.free.is_some() {
+            let end = self.path.start + self.path.duration;
+            return self.follow_free(end, log);
+        }
         match self.solver.track(&self.path) {
             Ok(progress) => {
                 self.course.path_progress.add(&progress);

@@ -9,7 +9,7 @@ use crate::fmi::error::Failure;
 use crate::fmi::log::{Advice, Logger};
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve};
-use crate::mechanism::{DriverId, DriverSource, RateSource};
+use crate::mechanism::{DriverId, DriverSource, Order, RateSource};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
 /// input counts as continuous: a host's polynomials do not meet exactly.
@@ -37,6 +37,10 @@ impl MechanismModel {
         }
         let start = self.start_of_step(h, end);
         self.set_path(start, h);
+        if self.free.is_some() {
+            let stayed = stays.then_some(was_current);
+            return self.take_free_step(end, stayed, log);
+        }
         match self.solver.track(&self.path) {
             Ok(progress) => {
                 self.report_falls(log);
@@ -87,7 +91,7 @@ impl MechanismModel {
         let inputs = self.mechanism.drivers.iter().zip(&mut course.inputs);
         for ((driver, input), (monitor, sources)) in inputs.zip(observed) {
             monitor.sources = *sources;
-            if driver.motion().is_some() {
+            if driver.motion().is_some() || driver.is_free() {
                 continue;
             }
             let now = input.sample(rule.rates, start);
@@ -155,6 +159,11 @@ impl MechanismModel {
         let rule = self.rule();
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             match driver.source {
+                // Accelerations follow from the forces when they are asked for.
+                DriverSource::Free { .. } => {
+                    let velocity = self.course.inputs[index].get(Order::Velocity);
+                    self.solution.driver_rates[index].derivatives = [velocity, 0.0];
+                }
                 DriverSource::Input { .. } => {
                     let (rates, sources) =
                         self.course.inputs[index].rates_after(rule, start, s * h);
@@ -175,8 +184,8 @@ impl MechanismModel {
     fn set_driver_rates_at_event(&mut self) {
         self.set_driver_rates(self.course.time, 0.0, 0.0);
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            // The rates of a prescribed motion are exact.
-            if driver.motion().is_some() {
+            // The rates of a prescribed motion are exact, those of a freedom follow from forces.
+            if driver.motion().is_some() || driver.is_free() {
                 continue;
             }
             let rates = self.solution.driver_rates[index].derivatives.iter_mut();
@@ -210,6 +219,7 @@ impl MechanismModel {
             self.report_falls(log);
         }
         self.commit_pose();
+        self.settle_freedoms(starting)?;
         if starting {
             for input in &mut self.course.inputs {
                 input.start();
@@ -348,6 +358,7 @@ impl MechanismModel {
     /// The rates do not exist.
     pub(super) fn refresh_rates(&mut self) -> Result<(), Failure> {
         if self.course.freshness == Freshness::Pose {
+            self.solve_freedoms()?;
             let solved = self.solution.solve_rates(&mut self.solver);
             solved.map_err(without_value)?;
             self.course.freshness = Freshness::Rates;

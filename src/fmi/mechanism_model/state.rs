@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::rule::Source;
 use super::{Course, Freshness, MechanismModel, Quantity};
+use crate::dynamics::FreeState;
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
@@ -78,6 +79,10 @@ impl MechanismModel {
                 check_value(variable, value).map_err(|error| error.to_string())?;
             }
         }
+        if let (Some(free), Some(state)) = (&mut self.free, &state.course.free) {
+            let resumed = free.resume(&self.solver, state);
+            resumed.map_err(|error| error.to_string())?;
+        }
         self.check_pose(&state.course.start_pose)?;
         for (pose, choices) in [
             (&state.course.committed, &state.course.committed_choices),
@@ -141,6 +146,7 @@ impl MechanismState {
             sources,
             inputs,
             force_inputs,
+            free,
             lifted,
             monitors,
             near_singular,
@@ -169,6 +175,9 @@ impl MechanismState {
             monitor.visit(codec)?;
         }
         codec.each(force_inputs, |codec, input| input.visit(codec))?;
+        if let Some(free) = free {
+            visit_free(free, codec)?;
+        }
         codec.each(lifted, Codec::flag)?;
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
@@ -186,6 +195,21 @@ impl MechanismState {
         }
         Ok(())
     }
+}
+
+fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unreadable> {
+    let FreeState {
+        integrator,
+        drivers,
+        loads,
+        energies,
+    } = free;
+    integrator.visit(|word| codec.word(word))?;
+    for rates in drivers {
+        codec.real(&mut rates.value)?;
+        codec.each(&mut rates.derivatives, Codec::real)?;
+    }
+    codec.each(loads.iter_mut().chain(energies), Codec::real)
 }
 
 fn visit_choices(

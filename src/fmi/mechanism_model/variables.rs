@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::rule::{EXTRAPOLATION, RATES};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Dependencies, Origin, Output, OutputSource, omitted_reactions};
-use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Unit};
+use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Signal, Unit};
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
 pub const TABLE_VERSION: u32 = 3;
@@ -63,7 +63,7 @@ pub(super) fn variables_without(
     if mechanism
         .drivers
         .iter()
-        .any(|driver| driver.motion().is_none())
+        .any(|driver| matches!(driver.source, DriverSource::Input { .. }))
     {
         table.add_settings(mechanism);
     }
@@ -213,7 +213,12 @@ impl Table {
                 OutputSource::Derived(index) => mechanism.derived[index].unit,
                 _ => Some(output.unit),
             };
-            self.add_named(output, quantity, Causality::Output, Kind::real(unit, None));
+            let start = start_of_state(mechanism, output.source);
+            let causality = match start {
+                Some(_) => Causality::State,
+                None => Causality::Output,
+            };
+            self.add_named(output, quantity, causality, Kind::real(unit, start));
         }
     }
 
@@ -254,5 +259,17 @@ impl Table {
             let traits = (Causality::Local, Variability::Discrete);
             self.add(name, description, quantity, traits, Kind::Integer);
         }
+    }
+}
+
+/// Returns the start of an output that is a continuous state: value and velocity of a freedom.
+fn start_of_state(mechanism: &Mechanism, output: OutputSource) -> Option<f64> {
+    let OutputSource::Signal(Signal::Motion(driver), order) = output else {
+        return None;
+    };
+    match (&mechanism.drivers[driver.index()].source, order) {
+        (DriverSource::Free { start, .. }, Order::Position) => Some(*start),
+        (DriverSource::Free { velocity, .. }, Order::Velocity) => Some(*velocity),
+        _ => None,
     }
 }

@@ -44,7 +44,9 @@ pub struct ModelDescription<'a, Q> {
     pub variables: Vec<Variable<Q>>,
     /// All outputs.
     pub outputs: Vec<Unknown>,
-    /// All outputs and calculated parameters.
+    /// The derivatives of the continuous states, in the order of the states.
+    pub derivatives: Vec<Unknown>,
+    /// All outputs, but states, and calculated parameters.
     pub initial_unknowns: Vec<Unknown>,
     /// Groups of variables that are connected together.
     pub terminals: Vec<Terminal>,

@@ -56,10 +56,8 @@ pub(super) fn write<Q>(
             write_log_categories(xml, standard)?;
             write_experiment(xml, description.experiment)?;
             xml.create_element("ModelVariables").with_content(|xml| {
-                let mut variables = variables.iter().enumerate();
-                variables.try_for_each(|(place, variable)| {
-                    write_variable(xml, standard, value_reference(place), variable)
-                })
+                (0..variables.len())
+                    .try_for_each(|place| write_variable(xml, standard, place, variables))
             })?;
             write_structure(xml, description)
         })
@@ -335,9 +333,11 @@ fn write_experiment(xml: &mut Xml, experiment: Experiment) -> io::Result<()> {
 fn write_variable<Q>(
     xml: &mut Xml,
     standard: Version,
-    value_reference: u32,
-    variable: &Variable<Q>,
+    place: usize,
+    variables: &[Variable<Q>],
 ) -> io::Result<()> {
+    let variable = &variables[place];
+    let is_state = |place: usize| variables[place].causality == Causality::State;
     let (element, variability) = match (&variable.kind, standard) {
         (Kind::Real { .. }, Version::Fmi2) => ("Real", variable.variability),
         (Kind::Real { .. }, Version::Fmi3) => ("Float64", variable.variability),
@@ -345,7 +345,7 @@ fn write_variable<Q>(
         (Kind::Integer, Version::Fmi3) => ("Float64", Variability::Continuous),
         (Kind::Enumeration { .. }, _) => ("Enumeration", variable.variability),
     };
-    let crosses = matches!(variable.causality, Causality::Input | Causality::Output);
+    let crosses = variable.causality == Causality::Input || variable.causality.is_output();
     let is_intermediate =
         standard == Version::Fmi3 && crosses && variability == Variability::Continuous;
     let outer = match standard {
@@ -356,7 +356,7 @@ fn write_variable<Q>(
         .create_element(outer)
         .with_attributes([
             ("name", variable.name.as_str()),
-            ("valueReference", &value_reference.to_string()),
+            ("valueReference", &value_reference(place).to_string()),
         ])
         .with_optional(&[("description", non_empty(&variable.description))])
         .with_attributes([
@@ -368,10 +368,10 @@ fn write_variable<Q>(
             ("initial", initial_name(variable.causality)),
         ]);
     match standard {
-        Version::Fmi2 => {
-            head.with_content(|xml| write_values(xml.create_element(element), standard, variable))
-        }
-        Version::Fmi3 => write_values(head, standard, variable),
+        Version::Fmi2 => head.with_content(|xml| {
+            write_values(xml.create_element(element), standard, variable, is_state)
+        }),
+        Version::Fmi3 => write_values(head, standard, variable, is_state),
     }
 }
 
@@ -380,6 +380,7 @@ fn write_values<Q>(
     element: ElementWriter<'_>,
     standard: Version,
     variable: &Variable<Q>,
+    is_state: impl Fn(usize) -> bool,
 ) -> io::Result<()> {
     let element = match variable.kind {
         Kind::Real {
@@ -392,8 +393,10 @@ fn write_values<Q>(
             let display = unit.and_then(|unit| unit.display);
             let [min, max, nominal, start] =
                 [min, max, nominal, start].map(|value| value.map(number));
-            // Some hosts of FMI 2.0 count each variable that has one as a state; the FMU has no states.
-            let derivative = variable.derivative_of.filter(|_| standard == Version::Fmi3);
+            // Some hosts of FMI 2.0 count each variable whose derivative is known as a state.
+            let derivative = variable
+                .derivative_of
+                .filter(|of| standard == Version::Fmi3 || is_state(*of));
             let derivative = derivative.map(|of| value_reference(of).to_string());
             element.with_optional(&[
                 ("declaredType", unit.and_then(type_of)),
@@ -420,7 +423,7 @@ fn causality_name(causality: Causality) -> &'static str {
         Causality::Parameter => "parameter",
         Causality::CalculatedParameter => "calculatedParameter",
         Causality::Input => "input",
-        Causality::Output => "output",
+        Causality::Output | Causality::State => "output",
         Causality::Local => "local",
         Causality::Independent => "independent",
     }
@@ -438,7 +441,7 @@ fn variability_name(variability: Variability) -> &'static str {
 /// Returns the attribute `initial` of variables of a causality.
 fn initial_name(causality: Causality) -> Option<&'static str> {
     match causality {
-        Causality::Parameter => Some("exact"),
+        Causality::Parameter | Causality::State => Some("exact"),
         Causality::CalculatedParameter | Causality::Output | Causality::Local => Some("calculated"),
         Causality::Input | Causality::Independent => None,
     }
@@ -447,9 +450,18 @@ fn initial_name(causality: Causality) -> Option<&'static str> {
 fn write_structure<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
     let standard = description.standard;
     xml.create_element("ModelStructure").with_content(|xml| {
-        for (element, unknowns) in [
-            ("Output", &description.outputs),
-            ("InitialUnknown", &description.initial_unknowns),
+        for (list, element, unknowns) in [
+            ("Outputs", "Output", &description.outputs),
+            (
+                "Derivatives",
+                "ContinuousStateDerivative",
+                &description.derivatives,
+            ),
+            (
+                "InitialUnknowns",
+                "InitialUnknown",
+                &description.initial_unknowns,
+            ),
         ] {
             let write = |xml: &mut Xml, element: &'static str| {
                 let mut unknowns = unknowns.iter();
@@ -459,7 +471,7 @@ fn write_structure<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> i
                 // The schema forbids an empty list.
                 Version::Fmi2 if unknowns.is_empty() => {}
                 Version::Fmi2 => xml
-                    .create_element(format!("{element}s"))
+                    .create_element(list)
                     .with_content(|xml| write(xml, "Unknown"))?,
                 Version::Fmi3 => write(xml, element)?,
             }

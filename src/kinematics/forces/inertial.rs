@@ -231,6 +231,6 @@ pub(super) fn add(to: &mut [f64; 3], force: [f64; 3]) {
 
 /// Returns the power of a force and a torque in a motion.
 #[inline]
-fn power(motion: [f64; 3], force: [f64; 3]) -> f64 {
+pub(super) fn power(motion: [f64; 3], force: [f64; 3]) -> f64 {
     motion[0] * force[0] + motion[1] * force[1] + motion[2] * force[2]
 }

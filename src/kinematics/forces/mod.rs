@@ -24,11 +24,13 @@
 //! | `self_stress` | reactions of least norm |
 //! | `indeterminate` | reactions that redundant constraints leave open |
 //! | `solve` | [`Forces`]: all results at a pose |
+//! | `equations` | [`EquationsOfMotion`]: inertia and bias in the coordinates of the drivers |
 //! | `rounding` | the rounding error of efforts |
 //! | `lift_off` | [`LiftOff`]: contacts that begin to pull |
 //! | `sensitivity` | [`ForceSensitivity`]: their derivatives along a direction |
 
 mod applied;
+mod equations;
 mod indeterminate;
 mod inertial;
 mod lift_off;
@@ -40,6 +42,7 @@ mod sensitivity;
 mod solve;
 mod wrench;
 
+pub use equations::EquationsOfMotion;
 pub(super) use indeterminate::indeterminate;
 pub use lift_off::LiftOff;
 pub use quantity::ForceQuantity;

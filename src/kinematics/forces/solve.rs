@@ -184,7 +184,7 @@ impl Forces {
         parts: ForceParts,
     ) -> Result<(), Error> {
         self.set_parameters(state)?;
-        self.apply_forces(state, motion)?;
+        self.apply_forces(state, motion.rates.velocity(), motion.inputs)?;
         // Reactions have the same bits with efforts and without.
         if parts.efforts || parts.reactions {
             state.refresh(compiled)?;
@@ -259,7 +259,7 @@ impl Forces {
     }
 
     /// Evaluates the masses, if parameters have changed.
-    fn set_parameters(&mut self, state: &State) -> Result<(), Error> {
+    pub(super) fn set_parameters(&mut self, state: &State) -> Result<(), Error> {
         let now = &state.pose.parameters;
         if self.has_parameters && self.parameters == *now {
             return Ok(());
@@ -275,7 +275,12 @@ impl Forces {
     }
 
     /// Evaluates the sizes of forces, and with them begins w and the energies.
-    fn apply_forces(&mut self, state: &State, motion: KnownMotion<'_>) -> Result<(), Error> {
+    pub(super) fn apply_forces(
+        &mut self,
+        state: &State,
+        q_dot: &[f64],
+        inputs: &[f64],
+    ) -> Result<(), Error> {
         self.results.demand.fill(0.0);
         self.results.energies = [0.0; 2];
         if self.applied.list.is_empty() {
@@ -285,12 +290,12 @@ impl Forces {
         let around = Circumstances {
             parameter: &|p: ParameterId| parameters[p.index()],
             time: state.pose.time,
-            inputs: motion.inputs,
+            inputs,
         };
         self.results.energies[1] = self.applied.apply(
             &self.mechanism,
             &state.at,
-            motion.rates.velocity(),
+            q_dot,
             &around,
             &mut self.results.sizes,
             &mut self.results.demand,
@@ -538,7 +543,7 @@ fn coasting_and_free(driver: &Driver, rates: &Jet) -> (Jet, f64) {
 
 /// Solves the rates of q for these rates of the drivers, at the pose at which the plan is
 /// factorised.
-fn solve_rates(
+pub(super) fn solve_rates(
     compiled: &mut CompiledMechanism,
     state: &mut State,
     driver_rates: &[Jet],

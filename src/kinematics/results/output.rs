@@ -118,14 +118,14 @@ impl Output {
     }
 
     /// Returns the outputs of a mechanism whose input drivers a host moves: bodies, markers,
-    /// measures, prescribed motions, measures computed from others, forces without the
+    /// measures, prescribed motions and freedoms, measures computed from others, forces without the
     /// [omitted reactions](omitted_reactions); in the file's order within each group.
     #[must_use]
     pub fn of_host(mechanism: &Mechanism, omitted: &[Origin]) -> Vec<Self> {
         let mut list = List::default();
         list.add_places(mechanism);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
-            if driver.motion().is_some() {
+            if driver.motion().is_some() || driver.is_free() {
                 list.add_driver(mechanism, DriverId(index));
             }
         }
@@ -293,7 +293,8 @@ impl List {
     }
 
     fn add_driver_forces(&mut self, mechanism: &Mechanism) {
-        for (index, driver) in mechanism.drivers.iter().enumerate() {
+        let drivers = mechanism.drivers.iter().enumerate();
+        for (index, driver) in drivers.filter(|(_, driver)| !driver.is_free()) {
             let (id, kind) = (DriverId(index), driver.coordinate.kind);
             let (name, effort) = (&driver.name, kind.effort_unit());
             let exerted = format!("{} that driver `{name}` exerts", kind.effort_word());

@@ -1,8 +1,8 @@
-//! Model exchange. There are no continuous states and no event indicators.
+//! Model exchange. There are no event indicators.
 
 use super::types::{fmi2EventInfo, fmi2False};
 use crate::fmi::Call;
-use crate::fmi::abi::arguments::{fill, room};
+use crate::fmi::abi::arguments::{fill, room, slice};
 use crate::fmi::abi::calls::instance_calls;
 
 instance_calls! {
@@ -43,24 +43,34 @@ instance_calls! {
         fill(terminate, [must_end.into()]);
         Ok(())
     };
-    /// `fmi2SetContinuousStates`: there are none.
-    fmi2SetContinuousStates(_: *const f64, count: usize) = |instance| {
-        instance.continuous(Call::SetContinuousStates, count)
+    /// `fmi2SetContinuousStates`.
+    fmi2SetContinuousStates(states: *const f64, count: usize) = |instance| {
+        instance.allow(Call::SetContinuousStates)?;
+        instance.set_continuous_states(&slice("x", states, count)?)
     };
-    /// `fmi2GetDerivatives`: there are no continuous states.
-    fmi2GetDerivatives(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetDerivatives, count)
+    /// `fmi2GetDerivatives`.
+    fmi2GetDerivatives(derivatives: *mut f64, count: usize) = |instance| {
+        instance.allow(Call::GetDerivatives)?;
+        let to = room("derivatives", derivatives, count)?;
+        fill(to, instance.derivatives_of_states(count)?);
+        Ok(())
     };
     /// `fmi2GetEventIndicators`: there are none.
     fmi2GetEventIndicators(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetEventIndicators, count)
+        instance.event_indicators(count)
     };
-    /// `fmi2GetContinuousStates`: there are none.
-    fmi2GetContinuousStates(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetContinuousStates, count)
+    /// `fmi2GetContinuousStates`.
+    fmi2GetContinuousStates(states: *mut f64, count: usize) = |instance| {
+        instance.allow(Call::GetContinuousStates)?;
+        let to = room("x", states, count)?;
+        fill(to, instance.continuous_states(count)?);
+        Ok(())
     };
-    /// `fmi2GetNominalsOfContinuousStates`: there are no continuous states.
-    fmi2GetNominalsOfContinuousStates(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetNominalsOfContinuousStates, count)
+    /// `fmi2GetNominalsOfContinuousStates`.
+    fmi2GetNominalsOfContinuousStates(nominals: *mut f64, count: usize) = |instance| {
+        instance.allow(Call::GetNominalsOfContinuousStates)?;
+        let to = room("x_nominal", nominals, count)?;
+        fill(to, instance.nominals(count)?);
+        Ok(())
     };
 }

@@ -1,7 +1,7 @@
-//! Events, and model exchange. There are no continuous or discrete states and no event indicators.
+//! Events, and model exchange. There are no discrete states and no event indicators.
 
 use crate::fmi::Call;
-use crate::fmi::abi::arguments::{check_room, write};
+use crate::fmi::abi::arguments::{check_room, fill, room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
 
 instance_calls! {
@@ -64,29 +64,39 @@ instance_calls! {
         instance.allow(Call::GetNumberOfEventIndicators)?;
         write("nEventIndicators", count, 0)
     };
-    /// `fmi3GetNumberOfContinuousStates`: always 0.
+    /// `fmi3GetNumberOfContinuousStates`.
     fmi3GetNumberOfContinuousStates(count: *mut usize) = |instance| {
-        instance.allow(Call::GetNumberOfContinuousStates)?;
-        write("nContinuousStates", count, 0)
+        let states = instance.number_of_states()?;
+        write("nContinuousStates", count, states)
     };
-    /// `fmi3SetContinuousStates`: there are none.
-    fmi3SetContinuousStates(_: *const f64, count: usize) = |instance| {
-        instance.continuous(Call::SetContinuousStates, count)
+    /// `fmi3SetContinuousStates`.
+    fmi3SetContinuousStates(states: *const f64, count: usize) = |instance| {
+        instance.allow(Call::SetContinuousStates)?;
+        instance.set_continuous_states(&slice("continuousStates", states, count)?)
     };
-    /// `fmi3GetContinuousStateDerivatives`: there are no continuous states.
-    fmi3GetContinuousStateDerivatives(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetDerivatives, count)
+    /// `fmi3GetContinuousStateDerivatives`.
+    fmi3GetContinuousStateDerivatives(derivatives: *mut f64, count: usize) = |instance| {
+        instance.allow(Call::GetDerivatives)?;
+        let to = room("derivatives", derivatives, count)?;
+        fill(to, instance.derivatives_of_states(count)?);
+        Ok(())
     };
     /// `fmi3GetEventIndicators`: there are none.
     fmi3GetEventIndicators(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetEventIndicators, count)
+        instance.event_indicators(count)
     };
-    /// `fmi3GetContinuousStates`: there are none.
-    fmi3GetContinuousStates(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetContinuousStates, count)
+    /// `fmi3GetContinuousStates`.
+    fmi3GetContinuousStates(states: *mut f64, count: usize) = |instance| {
+        instance.allow(Call::GetContinuousStates)?;
+        let to = room("continuousStates", states, count)?;
+        fill(to, instance.continuous_states(count)?);
+        Ok(())
     };
-    /// `fmi3GetNominalsOfContinuousStates`: there are no continuous states.
-    fmi3GetNominalsOfContinuousStates(_: *mut f64, count: usize) = |instance| {
-        instance.continuous(Call::GetNominalsOfContinuousStates, count)
+    /// `fmi3GetNominalsOfContinuousStates`.
+    fmi3GetNominalsOfContinuousStates(nominals: *mut f64, count: usize) = |instance| {
+        instance.allow(Call::GetNominalsOfContinuousStates)?;
+        let to = room("nominals", nominals, count)?;
+        fill(to, instance.nominals(count)?);
+        Ok(())
     };
 }

@@ -1,0 +1,342 @@
+//! The right-hand side: accelerations of freedoms at a trial point.
+
+use nalgebra::DMatrix;
+
+use super::error::Error;
+use super::given::Given;
+use super::integrator::{Failure, System};
+use super::state::FreeState;
+use crate::kinematics::{Curve, EquationsOfMotion, Forces, Path, Pose, Solver, SolverChoices};
+use crate::mechanism::{DriverId, Jet, Mechanism};
+
+/// A freedom feels no inertia if its pivot in J is below this part of its diagonal entry: some
+/// hundred roundings of the sum over bodies.
+const NO_INERTIA: f64 = 1e-13;
+
+/// The equations of a mechanism, and the accepted pose from which trials set out.
+#[derive(Debug)]
+pub(super) struct Equations {
+    /// The freedoms among the drivers, ascending.
+    pub(super) freedoms: Vec<DriverId>,
+    forces: Forces,
+    motion: EquationsOfMotion,
+    /// From the solver's pose straight to the values at a trial point.
+    path: Path,
+    /// J of the freedoms, and its Cholesky factor below the diagonal.
+    factor: DMatrix<f64>,
+    accelerations: Vec<f64>,
+    /// The trial point at which the equations are.
+    point: Point,
+    /// The last point accepted, with the solver's pose and choices there.
+    pub(super) accepted: Point,
+    pose: Pose,
+    choices: SolverChoices,
+    /// Whether the solver may be anywhere, after a trial that failed.
+    is_astray: bool,
+}
+
+/// A point of the motion.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    /// Value, velocity and acceleration of each driver.
+    pub(super) drivers: Vec<Jet>,
+    /// Sizes of the forces that are inputs.
+    pub(super) loads: Vec<f64>,
+    /// Kinetic energy, and potential energy of gravity \[J\].
+    pub(super) energy: f64,
+}
+
+impl Point {
+    fn copy_from(&mut self, other: &Self) {
+        self.drivers.copy_from_slice(&other.drivers);
+        self.loads.copy_from_slice(&other.loads);
+        self.energy = other.energy;
+    }
+
+    /// Returns whether a motion goes on smoothly from one point to another at the same place: with
+    /// the same rates of what is given.
+    fn joins(&self, other: &Self, mechanism: &Mechanism) -> bool {
+        let pairs = self.drivers.iter().zip(&other.drivers);
+        let mut pairs = pairs.zip(&mechanism.drivers);
+        self.loads == other.loads
+            && pairs.all(|((one, other), driver)| driver.is_free() || one == other)
+    }
+}
+
+impl Equations {
+    /// Makes the storage for a solver's mechanism; its pose is accepted.
+    pub(super) fn new(solver: &Solver) -> Self {
+        let drivers = solver.mechanism().drivers.iter().enumerate();
+        let freedoms = drivers.filter(|(_, driver)| driver.is_free());
+        let freedoms: Vec<_> = freedoms.map(|(index, _)| DriverId(index)).collect();
+        let forces = solver.forces();
+        let count = freedoms.len();
+        let drivers = solver.pose().drivers.iter();
+        let point = Point {
+            drivers: drivers.map(|value| Jet::constant(*value)).collect(),
+            loads: vec![0.0; forces.inputs()],
+            energy: 0.0,
+        };
+        let mut equations = Self {
+            freedoms,
+            motion: solver.equations_of_motion(),
+            path: Path::new(solver.mechanism()),
+            forces,
+            factor: DMatrix::zeros(count, count),
+            accelerations: vec![0.0; count],
+            accepted: point.clone(),
+            point,
+            pose: solver.pose().clone(),
+            choices: SolverChoices::default(),
+            is_astray: false,
+        };
+        equations.accept(solver);
+        equations
+    }
+
+    /// Accepts the point at which the equations and the solver are.
+    pub(super) fn accept(&mut self, solver: &Solver) {
+        self.accepted.copy_from(&self.point);
+        solver.save(&mut self.pose);
+        solver.copy_choices(&mut self.choices);
+        self.is_astray = false;
+    }
+
+    /// Takes the solver's pose for that of an accepted point.
+    pub(super) fn resume(&mut self, solver: &Solver, state: &FreeState) {
+        self.point.drivers.copy_from_slice(&state.drivers);
+        self.point.loads.copy_from_slice(&state.loads);
+        self.point.energy = state.energies[0];
+        self.accept(solver);
+    }
+
+    /// Solves the accelerations at the solver's pose for these rates and inputs.
+    pub(super) fn solve_at(
+        &mut self,
+        solver: &mut Solver,
+        drivers: &mut [Jet],
+        loads: &[f64],
+        dx: &mut [f64],
+    ) -> Result<(), Error> {
+        self.point.drivers.copy_from_slice(drivers);
+        self.point.loads.copy_from_slice(loads);
+        self.write(solver, dx)?;
+        for freedom in &self.freedoms {
+            let index = freedom.index();
+            drivers[index].derivatives[1] = self.point.drivers[index].second();
+        }
+        Ok(())
+    }
+
+    /// Solves J δü = −δeffort with the factor in use.
+    pub(super) fn accelerate(&mut self, efforts: &[f64], accelerations: &mut [f64]) {
+        for (acceleration, effort) in accelerations.iter_mut().zip(efforts) {
+            *acceleration = -effort;
+        }
+        substitute(&self.factor, accelerations);
+    }
+
+    /// Puts the solver back to the accepted pose.
+    pub(super) fn return_to_accepted(&mut self, solver: &mut Solver) {
+        let resumed = solver.resume(&self.pose, &self.choices);
+        debug_assert!(resumed, "the choices are the solver's own");
+        self.is_astray = false;
+    }
+
+    /// Returns whether the point goes on smoothly from the accepted one.
+    pub(super) fn goes_on(&self, mechanism: &Mechanism) -> bool {
+        self.point.joins(&self.accepted, mechanism)
+    }
+
+    /// Returns whether the solver's pose has the values of all drivers at the point.
+    pub(super) fn is_at_point(&self, pose: &Pose) -> bool {
+        let values = self.point.drivers.iter().map(|driver| driver.value);
+        values.eq(pose.drivers.iter().copied())
+    }
+
+    /// Writes the values of all drivers at a point of the motion.
+    pub(super) fn set_drivers(
+        &mut self,
+        solver: &Solver,
+        given: &impl Given,
+        time: f64,
+        x: &[f64],
+    ) {
+        let (positions, velocities) = x.split_at(self.freedoms.len());
+        let mut free = positions.iter().zip(velocities);
+        let definitions = solver.mechanism().drivers.iter().enumerate();
+        for (to, (index, driver)) in self.point.drivers.iter_mut().zip(definitions) {
+            let driver_id = DriverId(index);
+            *to = if driver.is_free() {
+                let (position, velocity) = free.next().expect("x has each freedom");
+                Jet::new(*position, [*velocity, 0.0])
+            } else if driver.motion().is_some() {
+                solver.motion(driver_id, time)
+            } else {
+                given.driver(driver_id, time)
+            };
+        }
+        given.loads(time, &mut self.point.loads);
+    }
+
+    /// Moves the solver straight to the drivers' values and to `parameters` at a time.
+    pub(super) fn go(
+        &mut self,
+        solver: &mut Solver,
+        time: f64,
+        parameters: Option<&[f64]>,
+    ) -> Result<(), Error> {
+        if self.is_astray {
+            self.return_to_accepted(solver);
+        }
+        let pose = solver.pose();
+        self.path.start = time;
+        self.path.from.copy_from_slice(&pose.parameters);
+        let to = parameters.unwrap_or(&pose.parameters);
+        self.path.to.copy_from_slice(to);
+        let curves = self.path.curves.iter_mut().zip(&self.point.drivers);
+        for ((curve, driver), now) in curves.zip(&pose.drivers) {
+            *curve = Curve::held(driver.value, *now);
+        }
+        match solver.track(&self.path) {
+            Ok(_) => Ok(()),
+            Err(blocked) => {
+                self.is_astray = true;
+                let described =
+                    blocked.describe(solver.mechanism(), solver.pose(), Some(time), |_| true);
+                Err(Error::Blocked(described))
+            }
+        }
+    }
+
+    /// Writes velocities and accelerations of the freedoms, and the power of all that acts on the
+    /// bodies but gravity, at the solver's pose.
+    pub(super) fn write(&mut self, solver: &mut Solver, dx: &mut [f64]) -> Result<(), Error> {
+        let Self {
+            point,
+            forces,
+            motion,
+            ..
+        } = self;
+        let velocity = |driver: DriverId| point.drivers[driver.index()].first();
+        solver.write_equations(velocity, &point.loads, forces, motion)?;
+        point.energy = motion.energies[0] + motion.energies[1];
+        self.solve_accelerations(solver)?;
+        let count = self.freedoms.len();
+        for (k, freedom) in self.freedoms.iter().enumerate() {
+            let driver = self.point.drivers[freedom.index()];
+            dx[k] = driver.first();
+            dx[count + k] = driver.second();
+        }
+        dx[2 * count] = self.power(solver);
+        Ok(())
+    }
+
+    /// Solves J ü = −bias for the freedoms.
+    fn solve_accelerations(&mut self, solver: &Solver) -> Result<(), Error> {
+        let definitions = &solver.mechanism().drivers;
+        let (inertia, drivers) = (&self.motion.inertia, &self.point.drivers);
+        for (row, freedom) in self.freedoms.iter().enumerate() {
+            let freedom = freedom.index();
+            let known = drivers.iter().zip(definitions).enumerate();
+            let known = known.filter(|(_, (_, definition))| !definition.is_free());
+            let inertial =
+                known.map(|(other, (rates, _))| inertia[(freedom, other)] * rates.second());
+            self.accelerations[row] = -(self.motion.bias[freedom] + inertial.sum::<f64>());
+            for (column, other) in self.freedoms[..=row].iter().enumerate() {
+                self.factor[(row, column)] = inertia[(freedom, other.index())];
+            }
+        }
+        self.factorise(solver)?;
+        substitute(&self.factor, &mut self.accelerations);
+        for (freedom, acceleration) in self.freedoms.iter().zip(&self.accelerations) {
+            self.point.drivers[freedom.index()].derivatives[1] = *acceleration;
+        }
+        Ok(())
+    }
+
+    /// Factorises J by Cholesky's method, in place.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoInertia`] for freedoms that move no mass.
+    fn factorise(&mut self, solver: &Solver) -> Result<(), Error> {
+        let factor = &mut self.factor;
+        for row in 0..factor.nrows() {
+            for column in 0..row {
+                let sum: f64 = (0..column)
+                    .map(|k| factor[(row, k)] * factor[(column, k)])
+                    .sum();
+                factor[(row, column)] = (factor[(row, column)] - sum) / factor[(column, column)];
+            }
+            let own = factor[(row, row)];
+            let pivot = own - (0..row).map(|k| factor[(row, k)].powi(2)).sum::<f64>();
+            if pivot.is_nan() || pivot <= NO_INERTIA * own {
+                let freedom = self.freedoms[row].index();
+                let name = &solver.mechanism().drivers[freedom].name;
+                let freedoms = vec![format!("freedom `{name}`")];
+                return Err(Error::NoInertia { freedoms });
+            }
+            factor[(row, row)] = pivot.sqrt();
+        }
+        Ok(())
+    }
+
+    /// Returns the power of the applied forces and of the drivers \[W\].
+    fn power(&self, solver: &Solver) -> f64 {
+        let definitions = solver.mechanism().drivers.iter().enumerate();
+        let driven = definitions.filter(|(_, driver)| !driver.is_free());
+        let powers = driven.map(|(row, _)| {
+            let accelerations = self.point.drivers.iter().enumerate();
+            let inertial = accelerations
+                .map(|(column, other)| self.motion.inertia[(row, column)] * other.second());
+            let effort = self.motion.bias[row] + inertial.sum::<f64>();
+            effort * self.point.drivers[row].first()
+        });
+        self.motion.applied_power + powers.sum::<f64>()
+    }
+}
+
+/// Solves L Lᵀ x = b for the factor L below the diagonal; b stands in x.
+fn substitute(factor: &DMatrix<f64>, x: &mut [f64]) {
+    let count = x.len();
+    for row in 0..count {
+        let sum: f64 = (0..row).map(|k| factor[(row, k)] * x[k]).sum();
+        x[row] = (x[row] - sum) / factor[(row, row)];
+    }
+    for row in (0..count).rev() {
+        let sum: f64 = (row + 1..count).map(|k| factor[(k, row)] * x[k]).sum();
+        x[row] = (x[row] - sum) / factor[(row, row)];
+    }
+}
+
+/// A mechanism on a trial step.
+pub(super) struct Trials<'a, G> {
+    pub(super) solver: &'a mut Solver,
+    pub(super) equations: &'a mut Equations,
+    pub(super) given: &'a G,
+}
+
+impl<G: Given> System for Trials<'_, G> {
+    type Cause = Error;
+
+    fn derivatives(&mut self, t: f64, x: &[f64], dx: &mut [f64]) -> Result<(), Failure<Error>> {
+        let Self {
+            solver,
+            equations,
+            given,
+        } = self;
+        equations.set_drivers(solver, *given, t, x);
+        equations.go(solver, t, None).map_err(Failure::Trial)?;
+        equations.write(solver, dx).map_err(|error| match error {
+            // No shorter step finds a mass.
+            Error::NoInertia { .. } => Failure::Hard(error),
+            _ => Failure::Trial(error),
+        })
+    }
+
+    fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
+        self.equations.accept(self.solver);
+        Ok(())
+    }
+}

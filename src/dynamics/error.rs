@@ -1,0 +1,45 @@
+//! Reasons for which a free motion stops.
+
+use super::integrator;
+use crate::kinematics;
+
+/// The reason for which a free motion stops.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A singular position, a contradiction, a value without a mechanism.
+    #[error("{0}")]
+    Blocked(String),
+    /// Rates or forces do not exist.
+    #[error(transparent)]
+    Kinematics(#[from] kinematics::Error),
+    /// Some freedoms move no mass.
+    #[error(
+        "{} cannot move by forces: no body with a mass moves along; give the bodies that move with \
+         it `mass`, and `inertia` or a `center` off the pivot",
+        .freedoms.join(", ")
+    )]
+    NoInertia {
+        /// Kind and name of each.
+        freedoms: Vec<String>,
+    },
+    /// The integrator finds no step.
+    #[error("the free motion cannot go on: {0}")]
+    Integrator(String),
+}
+
+impl From<integrator::Error<Self>> for Error {
+    fn from(error: integrator::Error<Self>) -> Self {
+        match error {
+            integrator::Error::Stopped { cause, .. } => cause,
+            integrator::Error::Stuck {
+                reason: integrator::Reason::Failed(cause),
+                ..
+            }
+            | integrator::Error::NoDerivatives {
+                reason: integrator::Reason::Failed(cause),
+                ..
+            } => cause,
+            other => Self::Integrator(other.to_string()),
+        }
+    }
+}

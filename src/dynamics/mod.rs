@@ -1,0 +1,28 @@
+//! Dynamics: the motion of coordinates that nobody drives.
+//!
+//! A freedom is a coordinate u whose effort is zero. With J and bias as in
+//! [`EquationsOfMotion`](crate::kinematics::EquationsOfMotion) its acceleration follows from
+//! J ü + bias = 0: Haug's coordinate partitioning with the freedoms as independent coordinates. Their
+//! values and velocities are integrated; the positions of all bodies are solved at each instant, so
+//! that joints stay closed to rounding, and the mechanism never changes its assembly mode.
+//!
+//! | file or folder | subject |
+//! |---|---|
+//! | [`integrator`] | ordinary differential equations, one step at a time |
+//! | `error` | reasons for which a motion stops |
+//! | `given` | what comes from outside: inputs |
+//! | `state` | [`FreeState`]: all numbers on which a motion depends |
+//! | `equations` | the right-hand side |
+//! | `motion` | [`FreeMotion`]: the motion of one mechanism |
+
+mod equations;
+mod error;
+mod given;
+pub mod integrator;
+mod motion;
+mod state;
+
+pub use error::Error;
+pub use given::Given;
+pub use motion::FreeMotion;
+pub use state::FreeState;

@@ -1,0 +1,278 @@
+//! The free motion of a mechanism.
+
+use std::sync::Arc;
+
+use super::equations::{Equations, Trials};
+use super::error::Error;
+use super::given::Given;
+use super::integrator::{ErrorControl, Integrator, Method, Statistics};
+use super::state::FreeState;
+use crate::kinematics::{Pose, Solver};
+use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
+
+/// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
+///
+/// It moves a [`Solver`] of the mechanism, whose pose it expects where it left it.
+#[derive(Debug)]
+pub struct FreeMotion {
+    equations: Equations,
+    integrator: Integrator,
+    /// Values and velocities of the freedoms, and the work done since the energy was noted.
+    x: Vec<f64>,
+    /// Energy of the bodies without that of springs when the work was zero \[J\].
+    energy: f64,
+}
+
+impl FreeMotion {
+    /// Makes the motion of a mechanism at a solver's pose, with the velocities of its file. `None`
+    /// for a mechanism without freedoms.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Integrator`] for a tolerance that is none.
+    pub fn new(solver: &Solver, tolerance: f64) -> Result<Option<Self>, Error> {
+        let equations = Equations::new(solver);
+        if equations.freedoms.is_empty() {
+            return Ok(None);
+        }
+        let count = equations.freedoms.len();
+        let mut x = vec![0.0; 2 * count + 1];
+        write_start(&equations.freedoms, solver.pose(), &mut x);
+        let control = ErrorControl::new(tolerance, scales(solver, &equations.freedoms))
+            .map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        let start = solver.pose().time;
+        let integrator = Integrator::new(Method::Automatic, control, start, x.clone())
+            .map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        Ok(Some(Self {
+            equations,
+            integrator,
+            x,
+            energy: 0.0,
+        }))
+    }
+
+    /// Returns the freedoms among the drivers, ascending.
+    #[must_use]
+    pub fn freedoms(&self) -> &[DriverId] {
+        &self.equations.freedoms
+    }
+
+    /// Returns value, velocity and acceleration of each driver at the present time \[SI\].
+    #[must_use]
+    pub fn drivers(&self) -> &[Jet] {
+        &self.equations.accepted.drivers
+    }
+
+    /// Returns the energy that the motion has gained without a cause \[J\]: kinetic and potential
+    /// energy, less the work of all that acts on the bodies, since the start or the last jump.
+    #[must_use]
+    pub fn energy_error(&self) -> f64 {
+        let work = self.integrator.state().x[2 * self.freedoms().len()];
+        self.equations.accepted.energy - self.energy - work
+    }
+
+    /// Returns the integrator's work.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        self.integrator.state().statistics
+    }
+
+    /// Returns the velocities of the freedoms \[m/s or rad/s\].
+    pub fn velocities(&self) -> impl Iterator<Item = f64> {
+        let count = self.freedoms().len();
+        self.integrator.state().x[count..2 * count].iter().copied()
+    }
+
+    /// Returns a copy of the state.
+    #[must_use]
+    pub fn state(&self) -> FreeState {
+        let accepted = &self.equations.accepted;
+        FreeState {
+            integrator: self.integrator.state().clone(),
+            drivers: accepted.drivers.clone(),
+            loads: accepted.loads.clone(),
+            energies: [accepted.energy, self.energy],
+        }
+    }
+
+    /// Writes the state over one of the same mechanism. Allocates nothing.
+    pub fn save(&self, state: &mut FreeState) {
+        let accepted = &self.equations.accepted;
+        state.integrator.copy_from(self.integrator.state());
+        state.drivers.copy_from_slice(&accepted.drivers);
+        state.loads.copy_from_slice(&accepted.loads);
+        state.energies = [accepted.energy, self.energy];
+    }
+
+    /// Goes on from a state of the same mechanism, with the solver at the pose that belongs to it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Integrator`] for a state that no motion of this mechanism can have.
+    pub fn resume(&mut self, solver: &Solver, state: &FreeState) -> Result<(), Error> {
+        let restored = self.integrator.restore(&state.integrator);
+        restored.map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        self.energy = state.energies[1];
+        self.equations.resume(solver, state);
+        Ok(())
+    }
+
+    /// Writes the accelerations of the freedoms at the solver's pose into the rates of all drivers,
+    /// for these inputs of forces. The motion itself stays. Allocates nothing.
+    ///
+    /// # Errors
+    ///
+    /// They do not exist there.
+    pub fn solve_accelerations(
+        &mut self,
+        solver: &mut Solver,
+        drivers: &mut [Jet],
+        loads: &[f64],
+    ) -> Result<(), Error> {
+        let Self { equations, x, .. } = self;
+        equations.solve_at(solver, drivers, loads, x)
+    }
+
+    /// Replaces changes of what each freedom would have to exert by the changes of accelerations
+    /// that make them zero, at the pose at which accelerations were solved last.
+    pub fn accelerate(&mut self, efforts: &[f64], accelerations: &mut [f64]) {
+        self.equations.accelerate(efforts, accelerations);
+    }
+
+    /// Begins at the solver's pose, with the velocities of the file.
+    ///
+    /// # Errors
+    ///
+    /// Accelerations do not exist there.
+    pub fn start(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
+        let mechanism = Arc::clone(solver.mechanism());
+        self.restart(solver, given, |freedom| start_velocity(&mechanism, freedom))
+    }
+
+    /// Begins at the solver's pose, with these velocities of the freedoms.
+    ///
+    /// # Errors
+    ///
+    /// Accelerations do not exist there.
+    pub fn restart(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        velocity: impl Fn(DriverId) -> f64,
+    ) -> Result<(), Error> {
+        let count = self.freedoms().len();
+        write_start(&self.equations.freedoms, solver.pose(), &mut self.x);
+        let velocities = self.x[count..].iter_mut();
+        for (x, freedom) in velocities.zip(&self.equations.freedoms) {
+            *x = velocity(*freedom);
+        }
+        self.renew(solver, given)
+    }
+
+    /// Moves the mechanism at once to the inputs at the present time and to `parameters`, while the
+    /// freedoms keep their values and velocities.
+    ///
+    /// # Errors
+    ///
+    /// No continuous motion leads there; the mechanism stays at its pose.
+    pub fn jump(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        parameters: &[f64],
+    ) -> Result<(), Error> {
+        let time = solver.pose().time;
+        self.x.copy_from_slice(&self.integrator.state().x);
+        self.equations.set_drivers(solver, given, time, &self.x);
+        let pose = solver.pose();
+        if pose.parameters == parameters && self.equations.is_at_point(pose) {
+            return match self.equations.goes_on(solver.mechanism()) {
+                true => Ok(()),
+                false => self.renew(solver, given),
+            };
+        }
+        if let Err(error) = self.equations.go(solver, time, Some(parameters)) {
+            self.equations.return_to_accepted(solver);
+            return Err(error);
+        }
+        self.renew(solver, given)
+    }
+
+    /// Moves the mechanism on to a time.
+    ///
+    /// # Errors
+    ///
+    /// The reason for which it stops; the mechanism is then where the last step of the integrator
+    /// has left it.
+    pub fn advance(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        until: f64,
+    ) -> Result<(), Error> {
+        let mut trials = Trials {
+            solver,
+            equations: &mut self.equations,
+            given,
+        };
+        while self.integrator.state().t.to_bits() != until.to_bits() {
+            if let Err(error) = self.integrator.advance(&mut trials, until) {
+                self.equations.return_to_accepted(solver);
+                return Err(error.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins a smooth part of the motion at the solver's pose, with the values in `x`.
+    fn renew(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
+        let count = self.freedoms().len();
+        self.x[2 * count] = 0.0;
+        let time = solver.pose().time;
+        let restarted = self.integrator.restart_at(time, &self.x);
+        restarted.map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        self.equations.set_drivers(solver, given, time, &self.x);
+        self.equations.write(solver, &mut self.x)?;
+        self.equations.accept(solver);
+        self.energy = self.equations.accepted.energy;
+        Ok(())
+    }
+}
+
+/// Writes the values of the freedoms at a pose.
+fn write_start(freedoms: &[DriverId], pose: &Pose, x: &mut [f64]) {
+    for (x, freedom) in x.iter_mut().zip(freedoms) {
+        *x = pose.drivers[freedom.index()];
+    }
+}
+
+/// Returns the velocity of a freedom at the start.
+fn start_velocity(mechanism: &Mechanism, freedom: DriverId) -> f64 {
+    match mechanism.drivers[freedom.index()].source {
+        DriverSource::Free { velocity, .. } => velocity,
+        _ => 0.0,
+    }
+}
+
+/// Returns the natural size of each component of x: a radian or the mechanism's size, the same per
+/// second; the work is left out of error control.
+fn scales(solver: &Solver, freedoms: &[DriverId]) -> Vec<f64> {
+    let mechanism = solver.mechanism();
+    let of = |freedom: &DriverId| {
+        if mechanism.drivers[freedom.index()]
+            .coordinate
+            .kind
+            .is_angle()
+        {
+            1.0
+        } else {
+            solver.size()
+        }
+    };
+    let values = freedoms.iter().map(of);
+    values
+        .clone()
+        .chain(values)
+        .chain([f64::INFINITY])
+        .collect()
+}

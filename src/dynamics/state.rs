@@ -1,0 +1,28 @@
+//! All numbers on which a free motion depends.
+
+use super::integrator::State;
+use crate::mechanism::Jet;
+
+/// All numbers on which the motion depends besides the solver's pose and choices: a motion that is
+/// given them goes on with the same bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeState {
+    /// Values and velocities of the freedoms, the work, and the integrator's own numbers.
+    pub integrator: State,
+    /// Value, velocity and acceleration of each driver at the present point.
+    pub drivers: Vec<Jet>,
+    /// Sizes of the forces that are inputs there.
+    pub loads: Vec<f64>,
+    /// Energy of the bodies without that of springs, there and when the work was zero \[J\].
+    pub energies: [f64; 2],
+}
+
+impl FreeState {
+    /// Copies another state of the same mechanism. Allocates nothing.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.integrator.copy_from(&other.integrator);
+        self.drivers.copy_from_slice(&other.drivers);
+        self.loads.copy_from_slice(&other.loads);
+        self.energies = other.energies;
+    }
+}

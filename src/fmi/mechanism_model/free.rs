@@ -1,0 +1,200 @@
+//! The motion of freedoms: in co-simulation the model integrates, in model exchange the host.
+//!
+//! Values and velocities of freedoms stand among the inputs of their drivers, as if the host gave
+//! them; in model exchange it does.
+
+use super::force_input::ForceInput;
+use super::{MechanismModel, failed, without_value};
+use crate::dynamics::Given;
+use crate::fmi::error::Failure;
+use crate::fmi::log::Logger;
+use crate::kinematics::{Curve, Path, Progress};
+use crate::mechanism::{DriverId, Jet, Order};
+
+/// The inputs in force during a step, or a part of one. What jumps does so at the start.
+struct StepInputs<'a> {
+    path: &'a Path,
+    forces: &'a [ForceInput],
+}
+
+impl Given for StepInputs<'_> {
+    fn driver(&self, driver: DriverId, time: f64) -> Jet {
+        let tau = time - self.path.start;
+        match self.path.curves[driver.index()] {
+            Curve::Input {
+                position,
+                velocity,
+                acceleration,
+                ..
+            } => Jet::new(
+                position + tau * (velocity + 0.5 * tau * acceleration),
+                [velocity + tau * acceleration, acceleration],
+            ),
+            Curve::Motion => unreachable!("a prescribed motion is no input"),
+        }
+    }
+
+    fn loads(&self, time: f64, loads: &mut [f64]) {
+        let tau = time - self.path.start;
+        for (load, input) in loads.iter_mut().zip(self.forces) {
+            *load = input.after(tau);
+        }
+    }
+}
+
+impl MechanismModel {
+    /// Takes a step to `end` on the path that is set, by integration. `stayed` says for a step that is
+    /// all or nothing whether the pose belonged to the values set.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Discarded`] if the motion cannot go on: the mechanism is then where the integrator
+    /// has left it, or as before.
+    #[inline(never)]
+    pub(super) fn take_free_step(
+        &mut self,
+        end: f64,
+        stayed: Option<bool>,
+        log: &Logger,
+    ) -> Result<(), Failure> {
+        let start = self.path.start;
+        let h = self.path.duration;
+        self.course.path_progress = Progress::default();
+        let followed = self.integrate(end, log);
+        self.course.progress = self.course.path_progress;
+        match (followed, stayed) {
+            (Ok(()), _) => {
+                self.set_driver_rates(start, h, 1.0);
+                self.advance_forces(h);
+                self.course.time = end;
+                self.commit_pose();
+                self.complete_step(start, h, log);
+                Ok(())
+            }
+            (Err(failure), Some(was_current)) => {
+                self.stay_at_committed(was_current);
+                Err(failure)
+            }
+            (Err(failure), None) => {
+                self.stop_free(start, h);
+                Err(failure)
+            }
+        }
+    }
+
+    /// Follows the path that is set to the time `end`, by integration.
+    ///
+    /// # Errors
+    ///
+    /// As [`take_free_step`](Self::take_free_step).
+    pub(super) fn follow_free(&mut self, end: f64, log: &Logger) -> Result<(), Failure> {
+        let (start, h) = (self.path.start, self.path.duration);
+        let followed = self.integrate(end, log);
+        if followed.is_err() {
+            self.stop_free(start, h);
+        }
+        followed
+    }
+
+    /// Commits the pose at which the integrator has stopped.
+    fn stop_free(&mut self, start: f64, h: f64) {
+        let time = self.solver.pose().time;
+        let s = if h > 0.0 { (time - start) / h } else { 0.0 };
+        self.set_driver_rates(start, h, s);
+        self.advance_forces(time - start);
+        self.course.time = time;
+        self.commit_pose();
+    }
+
+    /// Moves the mechanism to the time `end`, and notes the values of its freedoms there.
+    fn integrate(&mut self, end: f64, log: &Logger) -> Result<(), Failure> {
+        let Self {
+            free: Some(free),
+            solver,
+            path,
+            course,
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        let state = course.free.as_mut().expect("made with the motion");
+        let given = StepInputs {
+            path,
+            forces: &course.force_inputs,
+        };
+        let steps = free.statistics().accepted;
+        let moved = free
+            .resume(solver, state)
+            .and_then(|()| free.jump(solver, &given, &path.to))
+            .and_then(|()| free.advance(solver, &given, end));
+        free.save(state);
+        let taken = free.statistics().accepted.wrapping_sub(steps);
+        let progress = &mut course.path_progress.substeps;
+        *progress = progress.saturating_add(u32::try_from(taken).unwrap_or(u32::MAX));
+        let velocities = free.velocities();
+        for (freedom, velocity) in free.freedoms().iter().zip(velocities) {
+            let input = &mut course.inputs[freedom.index()];
+            input.set(Order::Position, solver.pose().drivers[freedom.index()]);
+            input.set(Order::Velocity, velocity);
+        }
+        self.log_crossings(log);
+        moved.map_err(|error| Failure::Discarded(error.to_string()))
+    }
+
+    /// Takes the committed pose and the states that the host has set for those of the motion, when
+    /// initialization ends.
+    ///
+    /// # Errors
+    ///
+    /// Freedoms have no acceleration there.
+    pub(super) fn settle_freedoms(&mut self, starting: bool) -> Result<(), Failure> {
+        if !starting || self.free.is_none() {
+            return Ok(());
+        }
+        self.set_path(self.course.time, 0.0);
+        let Self {
+            free: Some(free),
+            solver,
+            path,
+            course,
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        let given = StepInputs {
+            path,
+            forces: &course.force_inputs,
+        };
+        let velocity = |freedom: DriverId| course.inputs[freedom.index()].get(Order::Velocity);
+        free.restart(solver, &given, velocity).map_err(failed)?;
+        if let Some(state) = &mut course.free {
+            free.save(state);
+        }
+        Ok(())
+    }
+
+    /// Solves the accelerations of freedoms at the pose, which is up to date.
+    ///
+    /// # Errors
+    ///
+    /// They do not exist.
+    pub(super) fn solve_freedoms(&mut self) -> Result<(), Failure> {
+        if self.free.is_none() {
+            return Ok(());
+        }
+        self.set_loads();
+        let Self {
+            free: Some(free),
+            solver,
+            solution,
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        free.solve_accelerations(solver, &mut solution.driver_rates, &solution.loads)
+            .map_err(without_value)
+    }
+}
