@@ -35,7 +35,7 @@ mod times;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 pub use library::{archive, check, check_parameter, describe_end, parameter_value, unknown_name};
 
@@ -95,7 +95,7 @@ pub fn status(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Export(command) => command.run(),
         Command::Platforms(command) => command.run(),
         Command::Schema(command) => command.run(),
-        Command::Completions(command) => command.run(),
+        Command::Completions(command) => command.run(Arguments::command()),
     };
     match outcome {
         Ok(()) => 0,

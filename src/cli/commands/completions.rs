@@ -1,6 +1,6 @@
 //! `biela completions`
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
 use crate::cli::error::Error;
@@ -18,10 +18,10 @@ pub(in crate::cli) struct Completions {
 }
 
 impl Completions {
-    pub(in crate::cli) fn run(self) -> Result<(), Error> {
+    /// Prints the script for `program`, the command line of biela.
+    pub(in crate::cli) fn run(self, mut program: clap::Command) -> Result<(), Error> {
         let mut script = Vec::new();
-        let mut command = crate::cli::Arguments::command();
-        clap_complete::generate(self.shell, &mut command, "biela", &mut script);
+        clap_complete::generate(self.shell, &mut program, "biela", &mut script);
         print(&String::from_utf8_lossy(&script))
     }
 }
