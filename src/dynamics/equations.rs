@@ -143,6 +143,11 @@ impl Equations {
         self.is_astray = false;
     }
 
+    /// Returns the equations of motion at the last trial point.
+    pub(super) fn motion(&self) -> &EquationsOfMotion {
+        &self.motion
+    }
+
     /// Returns whether the point goes on smoothly from the accepted one.
     pub(super) fn goes_on(&self, mechanism: &Mechanism) -> bool {
         self.point.joins(&self.accepted, mechanism)

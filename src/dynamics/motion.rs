@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use super::charts::{Charts, EXCHANGE};
 use super::equations::{Equations, Trials};
 use super::error::Error;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Method, Statistics};
 use super::state::FreeState;
-use crate::kinematics::{Pose, Solver};
+use crate::kinematics::{Pose, Solution, Solver};
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
@@ -17,6 +18,7 @@ use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 pub struct FreeMotion {
     equations: Equations,
     integrator: Integrator,
+    charts: Charts,
     /// Values and velocities of the freedoms, and the work done since the energy was noted.
     x: Vec<f64>,
     /// Energy of the bodies without that of springs when the work was zero \[J\].
@@ -44,6 +46,7 @@ impl FreeMotion {
         let integrator = Integrator::new(Method::Automatic, control, start, x.clone())
             .map_err(|invalid| Error::Integrator(invalid.to_string()))?;
         Ok(Some(Self {
+            charts: Charts::new(solver.mechanism(), &equations.freedoms),
             equations,
             integrator,
             x,
@@ -89,6 +92,7 @@ impl FreeMotion {
         let accepted = &self.equations.accepted;
         FreeState {
             integrator: self.integrator.state().clone(),
+            coordinates: self.charts.current().to_vec(),
             drivers: accepted.drivers.clone(),
             loads: accepted.loads.clone(),
             energies: [accepted.energy, self.energy],
@@ -99,12 +103,34 @@ impl FreeMotion {
     pub fn save(&self, state: &mut FreeState) {
         let accepted = &self.equations.accepted;
         state.integrator.copy_from(self.integrator.state());
+        state.coordinates.copy_from_slice(self.charts.current());
         state.drivers.copy_from_slice(&accepted.drivers);
         state.loads.copy_from_slice(&accepted.loads);
         state.energies = [accepted.energy, self.energy];
     }
 
-    /// Goes on from a state of the same mechanism, with the solver at the pose that belongs to it.
+    /// Makes the solver that of the coordinates of a state, at any pose, and gives the solution its
+    /// forces.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Integrator`] for coordinates that are none of the mechanism.
+    pub fn select(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        state: &FreeState,
+    ) -> Result<(), Error> {
+        match self.charts.select(solver, solution, &state.coordinates) {
+            true => Ok(()),
+            false => Err(Error::Integrator(
+                "its coordinates are none of this mechanism".to_owned(),
+            )),
+        }
+    }
+
+    /// Goes on from a state of the same mechanism, with the solver [of its coordinates](Self::select)
+    /// at the pose that belongs to it.
     ///
     /// # Errors
     ///
@@ -198,7 +224,8 @@ impl FreeMotion {
         self.renew(solver, given)
     }
 
-    /// Moves the mechanism on to a time.
+    /// Moves the mechanism on to a time. Near a dead point of the coordinates in use it goes on in
+    /// others: the solver is another one then, and the solution has its forces.
     ///
     /// # Errors
     ///
@@ -207,34 +234,69 @@ impl FreeMotion {
     pub fn advance(
         &mut self,
         solver: &mut Solver,
+        solution: &mut Solution,
         given: &impl Given,
         until: f64,
     ) -> Result<(), Error> {
-        let mut trials = Trials {
-            solver,
-            equations: &mut self.equations,
-            given,
-        };
         while self.integrator.state().t.to_bits() != until.to_bits() {
-            if let Err(error) = self.integrator.advance(&mut trials, until) {
+            let mut trials = Trials {
+                solver,
+                equations: &mut self.equations,
+                given,
+            };
+            let step = self.integrator.advance(&mut trials, until);
+            if let Err(error) = step {
                 self.equations.return_to_accepted(solver);
                 return Err(error.into());
             }
+            let equations = self.equations.motion();
+            if let Some(coordinates) = self.charts.better(solver, equations, EXCHANGE) {
+                self.exchange(solver, solution, given, coordinates)?;
+            }
         }
         Ok(())
+    }
+
+    /// Goes on in other coordinates, if they are coordinates of the mechanism.
+    fn exchange(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        given: &impl Given,
+        coordinates: Vec<usize>,
+    ) -> Result<(), Error> {
+        let Self {
+            equations,
+            integrator,
+            charts,
+            x,
+            ..
+        } = self;
+        x.copy_from_slice(&integrator.state().x);
+        let rates = equations.motion().coasting();
+        if !charts.exchange(solver, solution, coordinates, rates, x) {
+            return Ok(());
+        }
+        self.go_on(solver, given)
     }
 
     /// Begins a smooth part of the motion at the solver's pose, with the values in `x`.
     fn renew(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let count = self.freedoms().len();
         self.x[2 * count] = 0.0;
+        self.go_on(solver, given)?;
+        self.energy = self.equations.accepted.energy;
+        Ok(())
+    }
+
+    /// Accepts the solver's pose with the values in `x`, from which the integrator goes on.
+    fn go_on(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let time = solver.pose().time;
         let restarted = self.integrator.restart_at(time, &self.x);
         restarted.map_err(|invalid| Error::Integrator(invalid.to_string()))?;
         self.equations.set_drivers(solver, given, time, &self.x);
         self.equations.write(solver, &mut self.x)?;
         self.equations.accept(solver);
-        self.energy = self.equations.accepted.energy;
         Ok(())
     }
 }

@@ -6,6 +6,7 @@ use super::analysis::{
     self, Direction, GeometryWarning, InstantCentre, Modes, Range, RangeSettings, Sensitivity,
 };
 use super::assembly::estimate::{Move, estimate, moves};
+use super::constraint::Constraint;
 use super::continuation::{Blocked, PathTracker, Progress};
 use super::error::Error;
 use super::forces::{
@@ -289,6 +290,13 @@ impl Solver {
     #[must_use]
     pub fn measure(&self, index: usize, rates: &Rates) -> Jet {
         self.state.measure(&*self.compiled.measures[index], rates)
+    }
+
+    /// Returns value, rate and acceleration of a relation, such as that of a
+    /// [coordinate](super::constraint::of_coordinate), at the present pose. Allocates nothing.
+    #[must_use]
+    pub fn coordinate(&self, relation: &dyn Constraint, rates: &Rates) -> Jet {
+        self.state.measure(relation, rates)
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
