@@ -45,6 +45,17 @@ struct Candidate {
     relation: Box<dyn Constraint>,
 }
 
+impl Candidate {
+    /// Returns a radian or the mechanism's size.
+    fn scale(&self, size: f64) -> f64 {
+        if self.coordinate.kind.is_angle() {
+            1.0
+        } else {
+            size
+        }
+    }
+}
+
 /// A mechanism in other coordinates.
 #[derive(Debug)]
 struct Chart {
@@ -96,6 +107,17 @@ impl Charts {
         &self.current
     }
 
+    /// Returns the natural size of each component of x, for a mechanism of this size \[m\]: a radian or
+    /// the size for values, the same per second for velocities. The work is left out of error control.
+    pub(super) fn scales(&self, size: f64) -> Vec<f64> {
+        let values = self.current.iter().map(|k| self.candidates[*k].scale(size));
+        values
+            .clone()
+            .chain(values)
+            .chain([f64::INFINITY])
+            .collect()
+    }
+
     /// Returns coordinates in which the motion goes on better than in those in use, at the pose of
     /// these equations. Allocates only if there are some.
     pub(super) fn better(
@@ -105,16 +127,12 @@ impl Charts {
         least: f64,
     ) -> Option<Vec<usize>> {
         let size = solver.size();
-        let scale = |candidate: &Candidate| match candidate.coordinate.kind.is_angle() {
-            true => 1.0,
-            false => size,
-        };
         for (column, freedom) in self.freedoms.iter().enumerate() {
             let unit = equations.unit(*freedom);
-            let own = scale(&self.candidates[self.current[column]]);
+            let own = self.candidates[self.current[column]].scale(size);
             for (row, candidate) in self.candidates.iter().enumerate() {
                 let change = solver.coordinate(&*candidate.relation, unit).first();
-                self.changes[(row, column)] = change * own / scale(candidate);
+                self.changes[(row, column)] = change * own / candidate.scale(size);
             }
         }
         self.reduced.copy_from(&self.changes);

@@ -6,7 +6,7 @@ use super::charts::{Charts, EXCHANGE};
 use super::equations::{Equations, Trials};
 use super::error::Error;
 use super::given::Given;
-use super::integrator::{ErrorControl, Integrator, Method, Statistics};
+use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
 use super::state::FreeState;
 use crate::kinematics::{Pose, Solution, Solver};
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
@@ -18,6 +18,9 @@ use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 pub struct FreeMotion {
     equations: Equations,
     integrator: Integrator,
+    tolerance: f64,
+    /// The mechanism's size at the start \[m\].
+    size: f64,
     charts: Charts,
     /// Values and velocities of the freedoms, and the work done since the energy was noted.
     x: Vec<f64>,
@@ -40,13 +43,18 @@ impl FreeMotion {
         let count = equations.freedoms.len();
         let mut x = vec![0.0; 2 * count + 1];
         write_start(&equations.freedoms, solver.pose(), &mut x);
-        let control = ErrorControl::new(tolerance, scales(solver, &equations.freedoms))
-            .map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        let (charts, size) = (
+            Charts::new(solver.mechanism(), &equations.freedoms),
+            solver.size(),
+        );
+        let control = ErrorControl::new(tolerance, charts.scales(size)).map_err(unusable)?;
         let start = solver.pose().time;
-        let integrator = Integrator::new(Method::Automatic, control, start, x.clone())
-            .map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        let integrator = Integrator::new(Method::Automatic, control, start, x.clone());
+        let integrator = integrator.map_err(unusable)?;
         Ok(Some(Self {
-            charts: Charts::new(solver.mechanism(), &equations.freedoms),
+            tolerance,
+            size,
+            charts,
             equations,
             integrator,
             x,
@@ -74,6 +82,27 @@ impl FreeMotion {
         self.equations.accepted.energy - self.energy - work
     }
 
+    /// Sets the relative tolerance.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Integrator`] unless it is above 0 and below 1.
+    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Error> {
+        if tolerance.to_bits() != self.tolerance.to_bits() {
+            self.set_control(tolerance)?;
+            self.tolerance = tolerance;
+        }
+        Ok(())
+    }
+
+    /// Controls errors with a tolerance in the coordinates in use.
+    fn set_control(&mut self, tolerance: f64) -> Result<(), Error> {
+        let control = ErrorControl::new(tolerance, self.charts.scales(self.size));
+        control
+            .and_then(|control| self.integrator.set_control(control))
+            .map_err(unusable)
+    }
+
     /// Returns the integrator's work.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
@@ -92,6 +121,7 @@ impl FreeMotion {
         let accepted = &self.equations.accepted;
         FreeState {
             integrator: self.integrator.state().clone(),
+            tolerance: self.tolerance,
             coordinates: self.charts.current().to_vec(),
             drivers: accepted.drivers.clone(),
             loads: accepted.loads.clone(),
@@ -103,6 +133,7 @@ impl FreeMotion {
     pub fn save(&self, state: &mut FreeState) {
         let accepted = &self.equations.accepted;
         state.integrator.copy_from(self.integrator.state());
+        state.tolerance = self.tolerance;
         state.coordinates.copy_from_slice(self.charts.current());
         state.drivers.copy_from_slice(&accepted.drivers);
         state.loads.copy_from_slice(&accepted.loads);
@@ -121,12 +152,14 @@ impl FreeMotion {
         solution: &mut Solution,
         state: &FreeState,
     ) -> Result<(), Error> {
-        match self.charts.select(solver, solution, &state.coordinates) {
-            true => Ok(()),
-            false => Err(Error::Integrator(
-                "its coordinates are none of this mechanism".to_owned(),
-            )),
+        if self.charts.current() == state.coordinates {
+            return Ok(());
         }
+        if !self.charts.select(solver, solution, &state.coordinates) {
+            let why = "its coordinates are none of this mechanism";
+            return Err(Error::Integrator(why.to_owned()));
+        }
+        self.set_control(self.tolerance)
     }
 
     /// Goes on from a state of the same mechanism, with the solver [of its coordinates](Self::select)
@@ -136,8 +169,9 @@ impl FreeMotion {
     ///
     /// [`Error::Integrator`] for a state that no motion of this mechanism can have.
     pub fn resume(&mut self, solver: &Solver, state: &FreeState) -> Result<(), Error> {
+        self.set_tolerance(state.tolerance)?;
         let restored = self.integrator.restore(&state.integrator);
-        restored.map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        restored.map_err(unusable)?;
         self.energy = state.energies[1];
         self.equations.resume(solver, state);
         Ok(())
@@ -277,6 +311,7 @@ impl FreeMotion {
         if !charts.exchange(solver, solution, coordinates, rates, x) {
             return Ok(());
         }
+        self.set_control(self.tolerance)?;
         self.go_on(solver, given)
     }
 
@@ -293,7 +328,7 @@ impl FreeMotion {
     fn go_on(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let time = solver.pose().time;
         let restarted = self.integrator.restart_at(time, &self.x);
-        restarted.map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        restarted.map_err(unusable)?;
         self.equations.set_drivers(solver, given, time, &self.x);
         self.equations.write(solver, &mut self.x)?;
         self.equations.accept(solver);
@@ -316,25 +351,7 @@ fn start_velocity(mechanism: &Mechanism, freedom: DriverId) -> f64 {
     }
 }
 
-/// Returns the natural size of each component of x: a radian or the mechanism's size, the same per
-/// second; the work is left out of error control.
-fn scales(solver: &Solver, freedoms: &[DriverId]) -> Vec<f64> {
-    let mechanism = solver.mechanism();
-    let of = |freedom: &DriverId| {
-        if mechanism.drivers[freedom.index()]
-            .coordinate
-            .kind
-            .is_angle()
-        {
-            1.0
-        } else {
-            solver.size()
-        }
-    };
-    let values = freedoms.iter().map(of);
-    values
-        .clone()
-        .chain(values)
-        .chain([f64::INFINITY])
-        .collect()
+/// Returns the error of what the integrator refuses.
+fn unusable(invalid: Invalid) -> Error {
+    Error::Integrator(invalid.to_string())
 }

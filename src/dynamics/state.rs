@@ -9,6 +9,8 @@ use crate::mechanism::Jet;
 pub struct FreeState {
     /// Values and velocities of the freedoms, the work, and the integrator's own numbers.
     pub integrator: State,
+    /// Relative tolerance.
+    pub tolerance: f64,
     /// The coordinates in use, one per freedom: the file's own freedoms come first, then those of
     /// joints.
     pub coordinates: Vec<usize>,
@@ -27,6 +29,7 @@ impl FreeState {
         self.coordinates.copy_from_slice(&other.coordinates);
         self.drivers.copy_from_slice(&other.drivers);
         self.loads.copy_from_slice(&other.loads);
+        self.tolerance = other.tolerance;
         self.energies = other.energies;
     }
 }

@@ -251,6 +251,13 @@ impl Solver {
         self.state.resume(&mut self.compiled, pose, choices)
     }
 
+    /// Returns whether the bodies are where they are at another pose, apart from rounding.
+    #[must_use]
+    pub fn is_near(&self, pose: &Pose) -> bool {
+        let turns = self.state.whole_turns_since(&self.compiled.system, pose);
+        turns.is_some_and(|turns| turns.iter().all(|turns| *turns == 0.0))
+    }
+
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
     /// nothing.
     pub fn save(&self, pose: &mut Pose) {

@@ -340,6 +340,19 @@ impl Model for MechanismModel {
         self.set_freshness(Freshness::Stale);
     }
 
+    fn set_tolerance(&mut self, tolerance: f64, log: &Logger) {
+        let (Some(free), Some(state)) = (&mut self.free, &mut self.course.free) else {
+            return;
+        };
+        match free.set_tolerance(tolerance) {
+            Ok(()) => state.tolerance = tolerance,
+            Err(error) => log.warn(&format!(
+                "{error}: the free motion is integrated with {}",
+                state.tolerance
+            )),
+        }
+    }
+
     fn reset(&mut self) {
         let (start, choices) = (&self.file_pose, &self.file_choices);
         let free = self.file_free.clone();

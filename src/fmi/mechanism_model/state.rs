@@ -210,12 +210,14 @@ impl MechanismState {
 fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unreadable> {
     let FreeState {
         integrator,
+        tolerance,
         coordinates,
         drivers,
         loads,
         energies,
     } = free;
     integrator.visit(|word| codec.word(word))?;
+    codec.finite(tolerance)?;
     codec.each(coordinates, Codec::index)?;
     for rates in drivers {
         codec.real(&mut rates.value)?;
