@@ -9,6 +9,7 @@ use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::assembly::nearest::{AN_EQUATION, search_at_once};
 use crate::kinematics::assembly::part::STARTS;
+use crate::kinematics::constraint::TurnEffect;
 use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::Model;
@@ -40,6 +41,7 @@ pub(super) fn explain_open(
         state.at.copy_pose(&mut nearest);
         let gap = close_near(&model.system, state, &all, estimate)?;
         let slip = explain_slip(model, state, gap);
+        let slip = slip.or_else(|| explain_phase(model, state, estimate));
         state.at.set_pose(model.system.mechanism(), &nearest);
         slip
     });
@@ -103,6 +105,24 @@ pub(super) fn explain_open(
             _ => not_found(model, state, gathered.into_iter().collect()),
         },
     }
+}
+
+/// Returns the error for the one gear, belt or rack without which all else closes, and which then
+/// has no say: its phase is wrong.
+fn explain_phase(model: &Model, state: &mut State, estimate: &[f64]) -> Option<Error> {
+    let system = &model.system;
+    let equations = system.equations();
+    let rows = (0..equations.len())
+        .filter(|&row| equations[row].constraint.turn_effect() == TurnEffect::Proportional);
+    let mut wrong = rows.filter_map(|row| {
+        let others: Vec<_> = (0..equations.len()).filter(|k| *k != row).collect();
+        let decided = close_on(system, state, &others, estimate).is_none()
+            && depend_on(model, state, &[row], &others);
+        let (element, open) = open_joints(model, state, &[row], 0.0).pop()?;
+        decided.then(|| contradiction(model, state, &[element], element, open))
+    });
+    let first = wrong.next()?;
+    wrong.next().is_none().then_some(first)
 }
 
 /// Returns the error for a mechanism without a proof, at the nearest pose found.
