@@ -1,7 +1,7 @@
 //! Model exchange: what may be discarded (2.1.3), stop time (2.1.6), discrete values (2.1.7),
 //! functions without states (3.2.3).
 
-use biela::fmi::{Call, Category, Error, Failure, Interface, State, Status};
+use biela::fmi::{Category, Error, Failure, Interface, State, Status};
 
 use crate::clauses::{get, initialized, set, started, vr};
 use crate::common::log::Heard;
