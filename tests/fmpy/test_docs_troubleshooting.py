@@ -14,19 +14,19 @@ from rust_text import Literal, literals, reported, sources
 PAGE = ROOT / "docs" / "troubleshooting.md"
 
 FILES_WITHOUT_MESSAGES = {
-    "cli/check.rs": "its report, which is the answer and not a complaint",
-    "cli/range.rs": "likewise",
-    "cli/platforms.rs": "likewise",
+    "cli/commands/check.rs": "its report, which is the answer and not a complaint",
+    "cli/commands/range.rs": "likewise",
+    "cli/commands/platforms.rs": "likewise",
     "cli/documentation.rs": "the page in the FMU",
-    "cli/watch/server.rs": "what a browser is told",
+    "cli/commands/watch/server.rs": "what a browser is told",
     "fmi/mechanism_model/rule.rs": "descriptions in the FMU",
     "fmi/mechanism_model/variables.rs": "likewise",
-    "kinematics/output.rs": "likewise",
+    "kinematics/results/output.rs": "likewise",
     "mechanism/parameter.rs": "what `--set` says, not the reader",
     "fmi/model_description/writer.rs": "the FMU's XML",
     "fmi/model_description/xml.rs": "likewise",
-    "cli/check/forces.rs": "the report of `check`",
-    "cli/range/forces.rs": "the report of `range`",
+    "cli/commands/check/forces.rs": "the report of `check`",
+    "cli/commands/range/forces.rs": "the report of `range`",
     "fmi/log.rs": "descriptions of the log categories",
     "kinematics/reference.rs": "the oracle of the tests",
 }
@@ -42,6 +42,10 @@ NOT_FOR_PEOPLE = re.compile(
 PARTS = {
     "a fixed parameter, and initialization has ended": "cannot be set: it is …",
     "a parameter derived from others": "cannot be set: it is …",
+    "a state, and initialization has ended": "cannot be set: it is …",
+    "the derivatives are not finite": "no step leads on from t = … s: …",
+    "the estimated error is … times the tolerance": "likewise",
+    "the matrix of the stiff method is singular": "likewise",
     "no input, and only inputs have input derivatives": "cannot be set: it is …",
     "Integer or Enumeration": "`…` is …, not …",
     "the mechanism has none": "no … `…`; …",
