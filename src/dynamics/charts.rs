@@ -36,7 +36,16 @@ pub(super) struct Charts {
     unfit: Vec<Vec<usize>>,
     /// ∂candidates/∂coordinates in use, scaled.
     changes: DMatrix<f64>,
-    reduced: DMatrix<f64>,
+    all: Volume,
+    own: Volume,
+}
+
+/// Work space for the choice of rows that span a large volume.
+#[derive(Debug)]
+struct Volume {
+    rows: DMatrix<f64>,
+    /// The row chosen for each column.
+    chosen: Vec<usize>,
 }
 
 #[derive(Debug)]
@@ -97,7 +106,8 @@ impl Charts {
             others: Vec::new(),
             unfit: Vec::new(),
             changes: DMatrix::zeros(candidates.len(), count),
-            reduced: DMatrix::zeros(candidates.len(), count),
+            all: Volume::new(candidates.len(), count),
+            own: Volume::new(count, count),
             candidates,
         }
     }
@@ -135,17 +145,16 @@ impl Charts {
                 self.changes[(row, column)] = change * own / candidate.scale(size);
             }
         }
-        self.reduced.copy_from(&self.changes);
-        let count = self.freedoms.len();
-        let (best, volume) = largest_volume(&mut self.reduced);
-        let mut own = self.changes.rows(0, count).clone_owned();
-        let of_own = largest_volume(&mut own).1;
-        let own: Vec<usize> = (0..count).collect();
-        let prefers_own = of_own >= RETURN * volume && self.current != own;
-        let chosen = if prefers_own {
-            own
+        self.all.rows.copy_from(&self.changes);
+        let volume = self.all.choose();
+        self.own
+            .rows
+            .copy_from(&self.changes.rows(0, self.freedoms.len()));
+        let uses_own = self.current.iter().enumerate().all(|(k, own)| k == *own);
+        let chosen = if !uses_own && self.own.choose() >= RETURN * volume {
+            self.own.chosen.clone()
         } else if volume > least {
-            best
+            self.all.chosen.clone()
         } else {
             return None;
         };
@@ -236,35 +245,45 @@ impl Charts {
     }
 }
 
-/// Returns as many rows as there are columns that span a large volume, by elimination with complete
-/// pivoting, and the volume. Uses up the matrix.
-fn largest_volume(rows: &mut DMatrix<f64>) -> (Vec<usize>, f64) {
-    let count = rows.ncols();
-    let mut chosen = vec![usize::MAX; count];
-    let mut volume = 1.0;
-    for _ in 0..count {
-        let (mut best, mut at) = (0.0, (0, 0));
-        for column in (0..count).filter(|column| chosen[*column] == usize::MAX) {
-            for row in 0..rows.nrows() {
-                let entry = rows[(row, column)].abs();
-                if entry > best {
-                    (best, at) = (entry, (row, column));
+impl Volume {
+    fn new(rows: usize, columns: usize) -> Self {
+        Self {
+            rows: DMatrix::zeros(rows, columns),
+            chosen: vec![0; columns],
+        }
+    }
+
+    /// Chooses a row for each column so that these rows span a large volume, by elimination with
+    /// complete pivoting, and returns the volume. Uses up the rows.
+    fn choose(&mut self) -> f64 {
+        const NONE: usize = usize::MAX;
+        let Self { rows, chosen } = self;
+        chosen.fill(NONE);
+        let mut volume = 1.0;
+        for _ in 0..rows.ncols() {
+            let (mut best, mut at) = (0.0, (0, 0));
+            for column in (0..rows.ncols()).filter(|column| chosen[*column] == NONE) {
+                for row in 0..rows.nrows() {
+                    let entry = rows[(row, column)].abs();
+                    if entry > best {
+                        (best, at) = (entry, (row, column));
+                    }
+                }
+            }
+            if best == 0.0 {
+                return 0.0;
+            }
+            volume *= best;
+            let (pivot, column) = at;
+            chosen[column] = pivot;
+            for other in (0..rows.ncols()).filter(|other| *other != column) {
+                let factor = rows[(pivot, other)] / rows[at];
+                for row in 0..rows.nrows() {
+                    let entry = rows[(row, column)];
+                    rows[(row, other)] -= factor * entry;
                 }
             }
         }
-        let (row, column) = at;
-        volume *= best;
-        if best == 0.0 {
-            return (Vec::new(), 0.0);
-        }
-        chosen[column] = row;
-        for other in (0..count).filter(|other| *other != column) {
-            let factor = rows[(row, other)] / rows[(row, column)];
-            for k in 0..rows.nrows() {
-                let entry = rows[(k, column)];
-                rows[(k, other)] -= factor * entry;
-            }
-        }
+        volume
     }
-    (chosen, volume)
 }

@@ -6,7 +6,10 @@ use super::error::Error;
 use super::given::Given;
 use super::integrator::{Failure, System};
 use super::state::FreeState;
-use crate::kinematics::{Curve, EquationsOfMotion, Forces, Path, Pose, Solver, SolverChoices};
+use crate::kinematics::{
+    Curve, Direction, EquationsOfMotion, ForceQuantity, Forces, KnownMotion, Path, Pose, Rates,
+    Solver, SolverChoices,
+};
 use crate::mechanism::{DriverId, Jet, Mechanism};
 
 /// A freedom feels no inertia if its pivot in J is below this part of its diagonal entry: some
@@ -131,12 +134,102 @@ impl Equations {
         Ok(())
     }
 
-    /// Solves J δü = −δeffort with the factor in use.
-    pub(super) fn accelerate(&mut self, efforts: &[f64], accelerations: &mut [f64]) {
-        for (acceleration, effort) in accelerations.iter_mut().zip(efforts) {
-            *acceleration = -effort;
+    /// Completes a direction by the changes of the freedoms' accelerations, for which their efforts
+    /// stay zero: J δü = −δeffort. The point is that at which accelerations were solved last, and
+    /// `rates` are those of q there; `loads` are the changes of the inputs of forces.
+    pub(super) fn complete(
+        &mut self,
+        solver: &mut Solver,
+        rates: &Rates,
+        direction: &mut Direction,
+        loads: &[f64],
+    ) -> Result<(), Error> {
+        let motion = KnownMotion {
+            rates,
+            driver_rates: &self.point.drivers,
+            inputs: &self.point.loads,
+        };
+        for freedom in &self.freedoms {
+            direction.drivers[freedom.index()].derivatives[1] = 0.0;
         }
-        substitute(&self.factor, accelerations);
+        let changes = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
+        for (change, freedom) in self.accelerations.iter_mut().zip(&self.freedoms) {
+            *change = -changes.change(ForceQuantity::Effort(*freedom))?;
+        }
+        substitute(&self.factor, &mut self.accelerations);
+        for (change, freedom) in self.accelerations.iter().zip(&self.freedoms) {
+            direction.drivers[freedom.index()].derivatives[1] = *change;
+        }
+        Ok(())
+    }
+
+    /// Writes the derivatives of accelerations by values, velocities and time at an accepted point.
+    fn differentiate(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        (t, x): (f64, &[f64]),
+        jacobian: &mut DMatrix<f64>,
+        dx_dt: &mut [f64],
+    ) -> Result<(), Error> {
+        let count = self.freedoms.len();
+        let mut scratch = vec![0.0; x.len()];
+        self.set_drivers(solver, given, t, x);
+        self.go(solver, t, None)?;
+        self.write(solver, &mut scratch)?;
+        let mut rates = Rates::new(solver.pose().q.len());
+        solver.solve_rates(|driver| self.point.drivers[driver.index()], &mut rates)?;
+        jacobian.fill(0.0);
+        dx_dt.fill(0.0);
+        let still = vec![0.0; self.point.loads.len()];
+        for column in 0..2 * count {
+            let mut direction = Direction::zero(solver.mechanism());
+            let state = &mut direction.drivers[self.freedoms[column % count].index()];
+            if column < count {
+                state.value = 1.0;
+            } else {
+                state.derivatives[0] = 1.0;
+                jacobian[(column - count, column)] = 1.0;
+            }
+            self.complete(solver, &rates, &mut direction, &still)?;
+            for (row, change) in self.accelerations.iter().enumerate() {
+                jacobian[(count + row, column)] = *change;
+            }
+        }
+        let mut direction = Direction::zero(solver.mechanism());
+        let loads = self.drift(solver, given, t, &mut direction);
+        self.complete(solver, &rates, &mut direction, &loads)?;
+        dx_dt[count..2 * count].copy_from_slice(&self.accelerations);
+        Ok(())
+    }
+
+    /// Sets a direction to the changes in time of all that is given, and returns those of the inputs
+    /// of forces.
+    fn drift(
+        &self,
+        solver: &Solver,
+        given: &impl Given,
+        t: f64,
+        direction: &mut Direction,
+    ) -> Vec<f64> {
+        /// Part of the time, or of a second, over which loads are differenced: they are polynomials
+        /// of low degree, so that rounding decides.
+        const INCREMENT: f64 = 1e-6;
+        direction.time = 1.0;
+        let definitions = solver.mechanism().drivers.iter().enumerate();
+        for (index, driver) in definitions {
+            if !driver.is_free() && driver.motion().is_none() {
+                let [velocity, acceleration] = self.point.drivers[index].derivatives;
+                direction.drivers[index] = Jet::new(velocity, [acceleration, 0.0]);
+            }
+        }
+        let later = t + INCREMENT * t.abs().max(1.0);
+        let mut loads = self.point.loads.clone();
+        given.loads(later, &mut loads);
+        for (load, now) in loads.iter_mut().zip(&self.point.loads) {
+            *load = (*load - now) / (later - t);
+        }
+        loads
     }
 
     /// Proves that one motion joins the accepted pose and that at the present point, where the
@@ -384,6 +477,23 @@ impl<G: Given> System for Trials<'_, G> {
             Error::NoInertia { .. } => Failure::Hard(error),
             _ => Failure::Trial(error),
         })
+    }
+
+    fn jacobian(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        _: &[f64],
+        jacobian: &mut DMatrix<f64>,
+        dx_dt: &mut [f64],
+    ) -> Result<(), Failure<Error>> {
+        let Self {
+            solver,
+            equations,
+            given,
+        } = self;
+        let differentiated = equations.differentiate(solver, *given, (t, x), jacobian, dx_dt);
+        differentiated.map_err(Failure::Trial)
     }
 
     fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {

@@ -8,7 +8,7 @@ use super::error::Error;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
 use super::state::FreeState;
-use crate::kinematics::{Pose, Solution, Solver};
+use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
@@ -193,10 +193,21 @@ impl FreeMotion {
         equations.solve_at(solver, drivers, loads, x)
     }
 
-    /// Replaces changes of what each freedom would have to exert by the changes of accelerations
-    /// that make them zero, at the pose at which accelerations were solved last.
-    pub fn accelerate(&mut self, efforts: &[f64], accelerations: &mut [f64]) {
-        self.equations.accelerate(efforts, accelerations);
+    /// Completes a direction by the changes of the freedoms' accelerations, at the pose at which they
+    /// were [solved](Self::solve_accelerations) last: their efforts stay zero. `rates` are those of q
+    /// there, `loads` the changes of the inputs of forces.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::force_sensitivity`].
+    pub fn complete(
+        &mut self,
+        solver: &mut Solver,
+        rates: &Rates,
+        direction: &mut Direction,
+        loads: &[f64],
+    ) -> Result<(), Error> {
+        self.equations.complete(solver, rates, direction, loads)
     }
 
     /// Begins at the solver's pose, with the velocities of the file.

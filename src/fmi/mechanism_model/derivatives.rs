@@ -4,7 +4,7 @@ use super::{MechanismModel, Quantity, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
-use crate::kinematics::{Direction, ForceQuantity, OutputSource, Solution};
+use crate::kinematics::{Direction, OutputSource, Solution};
 use crate::mechanism::{DriverId, Order, Signal};
 
 impl MechanismModel {
@@ -28,6 +28,8 @@ impl MechanismModel {
         }
         self.refresh_pose(phase, log)?;
         self.refresh_rates()?;
+        // Also after outputs at other points.
+        self.solve_freedoms()?;
         let mut direction = Direction::zero(&self.mechanism);
         let mut loads = vec![0.0; self.course.force_inputs.len()];
         for &(known, change) in knowns {
@@ -94,20 +96,8 @@ impl MechanismModel {
         let Some(free) = &mut self.free else {
             return Ok(());
         };
-        let changes = (self.solution).force_changes(&mut self.solver, direction, loads);
-        let Some(changes) = changes.map_err(without_value)? else {
-            return Ok(());
-        };
-        let efforts = free.freedoms().iter();
-        let efforts = efforts.map(|freedom| changes.change(ForceQuantity::Effort(*freedom)));
-        let efforts: Result<Vec<f64>, _> = efforts.collect();
-        let efforts = efforts.map_err(without_value)?;
-        let mut accelerations = vec![0.0; efforts.len()];
-        free.accelerate(&efforts, &mut accelerations);
-        for (freedom, acceleration) in free.freedoms().iter().zip(accelerations) {
-            direction.drivers[freedom.index()].derivatives[1] = acceleration;
-        }
-        Ok(())
+        let completed = free.complete(&mut self.solver, &self.solution.rates, direction, loads);
+        completed.map_err(without_value)
     }
 
     /// Returns the derivatives of a driver's value, velocity and acceleration in force by one of its
