@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         Range,
         Report,
         Result,
+        StateSpace,
         Sweep,
     )
     from .tolerances import Tolerances, tolerance
@@ -65,6 +66,7 @@ __all__ = [
     "Range",
     "Report",
     "Result",
+    "StateSpace",
     "StoppedError",
     "Sweep",
     "Target",

@@ -94,6 +94,9 @@ class Mechanism:
     def modes(
         self, motions: _Motions, parameters: _Values
     ) -> tuple[list[tuple[list[float], float]], bool]: ...
+    def linearize(
+        self, motions: _Motions, parameters: _Values, columns: Sequence[int], balance: bool
+    ) -> tuple[list[float], list[float], list[str], list[str], list[list[float]]]: ...
     def draw(
         self,
         motions: _Motions,

@@ -24,7 +24,19 @@ from .errors import (
     diagnostics,
 )
 from .rates import differentiate
-from .results import ChangePoint, Drawing, End, Extreme, Mode, Modes, Range, Report, Result, Sweep
+from .results import (
+    ChangePoint,
+    Drawing,
+    End,
+    Extreme,
+    Mode,
+    Modes,
+    Range,
+    Report,
+    Result,
+    StateSpace,
+    Sweep,
+)
 
 Drive = Mapping[str, Any]
 """Motions by the names of drivers, and of freedoms that are to be driven, and sizes of forces by
@@ -318,6 +330,36 @@ class Mechanism:
         others, complete = self._inner.modes(self._start(drive), _given(parameters))
         pose = lambda q: dict(zip(self.bodies, np.reshape(q, (-1, 3))))
         return Modes(tuple(Mode(pose(q), rcond) for q, rcond in others), complete)
+
+    def linearize(
+        self,
+        drive: Drive | None = None,
+        parameters: Parameters | None = None,
+        variables: Sequence[str] | None = None,
+        balance: bool = False,
+    ) -> StateSpace:
+        """Linearizes the motion of freedoms at the start, exactly.
+
+        With `balance` the mechanism goes to the stable equilibrium downhill from there first.
+        `variables` narrows the outputs, as for `run`.
+
+        >>> space = pendulum.linearize(balance=True, variables=["rod.phi"])
+        >>> print(abs(space.eigenvalues).round(6))
+        [3.132092 3.132092]
+        """
+        names, _, indices = self._chosen(variables)
+        drivers, q, states, inputs, matrices = self._inner.linearize(
+            self._start(drive), _given(parameters), indices, balance
+        )
+        shapes = [(len(rows), len(columns)) for rows in (states, names) for columns in (states, inputs)]
+        return StateSpace(
+            tuple(states),
+            tuple(inputs),
+            tuple(names),
+            *(np.reshape(matrix, shape) for matrix, shape in zip(matrices, shapes)),
+            dict(zip(self.drivers, drivers)),
+            dict(zip(self.bodies, np.reshape(q, (-1, 3)))),
+        )
 
     def draw(
         self,

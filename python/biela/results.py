@@ -267,6 +267,37 @@ class Modes:
     """Whether there are no others."""
 
 
+@dataclass(frozen=True)
+class StateSpace:
+    """Linear equations of small free motions about a pose: dx/dt = A x + B u, y = C x + D u in SI
+    units. `control.ss(*space.matrices)` takes them."""
+
+    states: tuple[str, ...]
+    """Names of the states: value and velocity of each freedom."""
+    inputs: tuple[str, ...]
+    """Names of the inputs: sizes of forces, then value, velocity and acceleration of each driver that
+    is an input."""
+    outputs: tuple[str, ...]
+    A: NDArray
+    B: NDArray
+    C: NDArray
+    D: NDArray
+    drivers: dict[str, float]
+    """Values of drivers and freedoms at the pose [m or rad]."""
+    pose: dict[str, NDArray]
+    """x, y and phi of each body at the pose."""
+
+    @property
+    def matrices(self) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+        """A, B, C and D."""
+        return self.A, self.B, self.C, self.D
+
+    @property
+    def eigenvalues(self) -> NDArray:
+        """Eigenvalues of A [1/s]: decay, and circular frequency of each way to swing."""
+        return np.linalg.eigvals(self.A)
+
+
 class Report:
     """Report on a mechanism: `biela check --format json` in attributes."""
 

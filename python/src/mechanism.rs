@@ -81,6 +81,8 @@ type RangeRow<'py> = (
 /// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
 /// these are all.
 type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
+/// Values of drivers, q, names of states and of inputs, and A, B, C and D by rows.
+type LinearRow = (Vec<f64>, Vec<f64>, Vec<String>, Vec<String>, [Vec<f64>; 4]);
 
 /// Times, and motions of drivers.
 type Motions = (Vec<f64>, Vec<(String, Drive)>);
@@ -399,6 +401,35 @@ impl Mechanism {
             let others = modes.others.into_iter();
             let others = others.map(|Mode { q, rcond, .. }| (q[..count].to_vec(), rcond));
             Ok((others.collect(), modes.complete))
+        })
+    }
+
+    /// Linearizes the free motion at the start of a motion, or at the equilibrium downhill from it;
+    /// returns the drivers' values, q, the names of states and inputs, and A, B, C and D by rows.
+    fn linearize(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        columns: Vec<usize>,
+        balance: bool,
+    ) -> Result<LinearRow, Failure> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let all = self.all_columns();
+            let outputs: Vec<Output> = columns.iter().map(|index| all[*index].clone()).collect();
+            let mut runner = Runner::new(&scenario, &outputs)?;
+            runner.start(&self.in_force(parameters)?)?;
+            let space = runner.linearize(&outputs, balance)?;
+            let matrices = space.matrices().map(|rows| rows.concat());
+            let pose = runner.solver.pose();
+            Ok((
+                pose.drivers.clone(),
+                pose.q[..3 * self.model.bodies.len()].to_vec(),
+                space.states,
+                space.inputs,
+                matrices,
+            ))
         })
     }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use biela::dynamics::{self, FreeMotion, FreeState, Given};
+use biela::dynamics::{self, FreeMotion, FreeState, Given, StateSpace};
 use biela::kinematics::{
     Blocked, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution, Solver,
     SolverChoices,
@@ -234,6 +234,44 @@ impl Runner {
             let value = samples.map_or(now, |samples| samples.at(row).value);
             *curve = Curve::held(value, now);
         }
+    }
+
+    /// Linearizes the free motion at the start, or at the stable equilibrium downhill from it.
+    ///
+    /// # Errors
+    ///
+    /// There is no freedom, no equilibrium or no derivative.
+    pub(crate) fn linearize(
+        &mut self,
+        outputs: &[Output],
+        balance: bool,
+    ) -> Result<StateSpace, Failure> {
+        let Self {
+            free,
+            solver,
+            solution,
+            scenario,
+            held,
+            ..
+        } = self;
+        let Some((free, _)) = free else {
+            let why = "the mechanism has no freedom: all that moves is driven";
+            return Err(Failure::Usage(why.to_owned()));
+        };
+        if solution.forces().is_none() {
+            solution.seek_forces(solver);
+        }
+        let part = Part {
+            scenario,
+            held,
+            row: 0,
+        };
+        if balance {
+            free.balance(solver, solution, &part).map_err(stopped)?;
+        }
+        part.loads(scenario.times[0], &mut solution.loads);
+        solution.driver_rates.copy_from_slice(free.drivers());
+        free.linearize(solver, solution, outputs).map_err(stopped)
     }
 
     /// Returns what is worth knowing of the last [`advance`](Self::advance): singular positions

@@ -13,6 +13,7 @@ mod documentation;
 mod error;
 mod film;
 mod form;
+mod free;
 mod input;
 mod input_files;
 mod library;
@@ -58,6 +59,8 @@ enum Command {
     Check(commands::check::Check),
     Run(commands::run::Run),
     Range(commands::range::Range),
+    Balance(commands::balance::Balance),
+    Linearize(commands::linearize::Linearize),
     Tolerance(commands::tolerance::Tolerance),
     Draw(commands::draw::Draw),
     Page(commands::page::Page),
@@ -88,6 +91,8 @@ pub fn status(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
         Command::Range(command) => command.run(),
+        Command::Balance(command) => command.run(),
+        Command::Linearize(command) => command.run(),
         Command::Tolerance(command) => command.run(),
         Command::Draw(command) => command.run(),
         Command::Page(command) => command.run(),

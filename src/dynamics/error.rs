@@ -22,6 +22,9 @@ pub enum Error {
         /// Kind and name of each.
         freedoms: Vec<String>,
     },
+    /// The mechanism comes to no rest.
+    #[error("no stable equilibrium was found from the start: downhill motion comes to no rest")]
+    NoEquilibrium,
     /// The integrator finds no step.
     #[error("the free motion cannot go on: {0}")]
     Integrator(String),

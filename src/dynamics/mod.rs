@@ -15,16 +15,19 @@
 //! | `charts` | the coordinates in which the freedoms are integrated |
 //! | `equations` | the right-hand side |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
+//! | `linear` | its linearisation at a pose; static equilibrium |
 
 mod charts;
 mod equations;
 mod error;
 mod given;
 pub mod integrator;
+mod linear;
 mod motion;
 mod state;
 
 pub use error::Error;
 pub use given::Given;
+pub use linear::StateSpace;
 pub use motion::FreeMotion;
 pub use state::FreeState;

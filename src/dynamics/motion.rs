@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::charts::{Charts, EXCHANGE};
 use super::equations::{Equations, Trials};
 use super::error::Error;
@@ -101,6 +103,31 @@ impl FreeMotion {
         control
             .and_then(|control| self.integrator.set_control(control))
             .map_err(unusable)
+    }
+
+    /// Returns the natural size of each freedom's value.
+    pub(super) fn scales(&self) -> Vec<f64> {
+        let mut scales = self.charts.scales(self.size);
+        scales.truncate(self.freedoms().len());
+        scales
+    }
+
+    /// Returns J of the freedoms at the last point at which accelerations were solved.
+    pub(super) fn inertia(&self) -> DMatrix<f64> {
+        let inertia = &self.equations.motion().inertia;
+        let index = |k: usize| self.freedoms()[k].index();
+        let count = self.freedoms().len();
+        DMatrix::from_fn(count, count, |i, j| inertia[(index(i), index(j))])
+    }
+
+    /// Returns the accelerations of the freedoms at the accepted point.
+    pub(super) fn accelerations(&self) -> DVector<f64> {
+        let drivers = self.drivers();
+        let accelerations = self
+            .freedoms()
+            .iter()
+            .map(|id| drivers[id.index()].second());
+        DVector::from_iterator(self.freedoms().len(), accelerations)
     }
 
     /// Returns the integrator's work.

@@ -408,7 +408,7 @@ fn describe_modes(mechanism: &Mechanism, modes: &Modes) -> String {
     out
 }
 
-fn with_unit(kind: CoordinateKind, value: f64) -> String {
+pub(super) fn with_unit(kind: CoordinateKind, value: f64) -> String {
     if kind.is_angle() {
         format!("{} deg", fixed(value.to_degrees(), 6))
     } else {

@@ -1,9 +1,11 @@
 //! The commands of the program, one file each; what several of them share is beside this folder.
 
+pub(super) mod balance;
 pub(super) mod check;
 pub(super) mod completions;
 pub(super) mod draw;
 pub(super) mod export;
+pub(super) mod linearize;
 pub(super) mod new;
 pub(super) mod page;
 pub(super) mod platforms;

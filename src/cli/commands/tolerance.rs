@@ -61,6 +61,12 @@ impl Tolerance {
         let scenario = (self.conditions).scenario(&input.mechanism, times.start, None)?;
         let mechanism = scenario.mechanism.clone();
         let tolerances = tolerances(&mechanism)?;
+        if let Some(freedom) = mechanism.drivers.iter().find(|driver| driver.is_free()) {
+            return Err(Error::Usage(format!(
+                "--drive has to say how `{}` moves: the tolerance of a free motion is not known",
+                freedom.name
+            )));
+        }
         let columns = self.columns(&mechanism)?;
         let mut motion = Motion::start(input.assemble()?, scenario);
         if columns.iter().any(Output::is_force) {
