@@ -274,7 +274,7 @@ fn make(
         Request::SetTime(time) => (Call::SetTime, instance.set_time(time.get())),
         Request::GetContinuousStates(count) => (
             Call::GetContinuousStates,
-            instance.continuous(Call::GetContinuousStates, usize::from(*count)),
+            instance.continuous_states(usize::from(*count)).map(drop),
         ),
         Request::GetAll => {
             let reals = reals(instance);

@@ -379,6 +379,7 @@ fn it_is_described_and_packed() {
         capabilities: Integrator::CAPABILITIES,
         variables: model.variables().to_vec(),
         outputs: vec![unknown.clone()],
+        derivatives: Vec::new(),
         initial_unknowns: vec![unknown],
         terminals: Vec::new(),
     };

@@ -111,7 +111,7 @@ impl Loaded {
         let mechanism = Arc::clone(solver.mechanism());
         let drivers = mechanism.drivers.iter().enumerate();
         let driver_rates = drivers.map(|(index, driver)| match driver.source {
-            DriverSource::Input { .. } => {
+            DriverSource::Input { .. } | DriverSource::Free { .. } => {
                 Jet::new(0.0, [0.7 + spread(index), -1.4 + spread(index + 3)])
             }
             DriverSource::Motion(_) => {
