@@ -107,6 +107,7 @@ impl Motion {
         while self.solver.pose().time < time {
             let Self {
                 solver,
+                solution,
                 signals,
                 free: Some(free),
                 ..
@@ -118,9 +119,10 @@ impl Motion {
             let held = solver.pose().drivers.clone();
             let parameters = solver.pose().parameters.clone();
             let part = signals.part(start, &held);
-            let moved = free
-                .jump(solver, &part, &parameters)
-                .and_then(|()| free.advance(solver, &part, signals.next_point(start).min(time)));
+            let moved = free.jump(solver, &part, &parameters).and_then(|()| {
+                let until = signals.next_point(start).min(time);
+                free.advance(solver, solution, &part, until)
+            });
             moved.map_err(|stop| stop.to_string())?;
             self.tell_passed(time);
         }

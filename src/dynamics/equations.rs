@@ -31,6 +31,8 @@ pub(super) struct Equations {
     pub(super) accepted: Point,
     pose: Pose,
     choices: SolverChoices,
+    /// The pose at the end of a step, while the step is proved.
+    end: Pose,
     /// Whether the solver may be anywhere, after a trial that failed.
     is_astray: bool,
 }
@@ -87,6 +89,7 @@ impl Equations {
             accepted: point.clone(),
             point,
             pose: solver.pose().clone(),
+            end: solver.pose().clone(),
             choices: SolverChoices::default(),
             is_astray: false,
         };
@@ -136,11 +139,59 @@ impl Equations {
         substitute(&self.factor, accelerations);
     }
 
+    /// Proves that one motion joins the accepted pose and that at the present point, where the
+    /// mechanism has several drivers: trials on the way may have led round a place at which two
+    /// assembly modes meet. The drivers move on parabolas between the two.
+    pub(super) fn prove(&mut self, solver: &mut Solver) -> Result<(), Error> {
+        if self.point.drivers.len() < 2 {
+            return Ok(());
+        }
+        solver.save(&mut self.end);
+        self.return_to_accepted(solver);
+        self.is_astray = true;
+        let start = self.pose.time;
+        let h = self.end.time - start;
+        (self.path.start, self.path.duration) = (start, h.max(0.0));
+        self.path.from.copy_from_slice(&self.pose.parameters);
+        self.path.to.copy_from_slice(&self.pose.parameters);
+        let h = self.path.duration;
+        let ends = self.accepted.drivers.iter().zip(&self.end.drivers);
+        for (curve, (from, to)) in self.path.curves.iter_mut().zip(ends) {
+            let velocity = from.first();
+            let rest = to - from.value - h * velocity;
+            *curve = if h > 0.0 {
+                Curve::Input {
+                    position: from.value,
+                    velocity,
+                    acceleration: 2.0 * rest / (h * h),
+                    jump: 0.0,
+                }
+            } else {
+                Curve::held(*to, from.value)
+            };
+        }
+        let tracked = solver.track(&self.path);
+        let is_same = tracked.is_ok() && solver.is_near(&self.end);
+        solver.restore(&self.end);
+        if is_same {
+            self.is_astray = false;
+            return Ok(());
+        }
+        Err(Error::Blocked(
+            "the step leads round a position at which assembly modes meet".to_owned(),
+        ))
+    }
+
     /// Puts the solver back to the accepted pose.
     pub(super) fn return_to_accepted(&mut self, solver: &mut Solver) {
         let resumed = solver.resume(&self.pose, &self.choices);
         debug_assert!(resumed, "the choices are the solver's own");
         self.is_astray = false;
+    }
+
+    /// Returns the equations of motion at the last trial point.
+    pub(super) fn motion(&self) -> &EquationsOfMotion {
+        &self.motion
     }
 
     /// Returns whether the point goes on smoothly from the accepted one.
@@ -190,7 +241,7 @@ impl Equations {
             self.return_to_accepted(solver);
         }
         let pose = solver.pose();
-        self.path.start = time;
+        (self.path.start, self.path.duration) = (time, 0.0);
         self.path.from.copy_from_slice(&pose.parameters);
         let to = parameters.unwrap_or(&pose.parameters);
         self.path.to.copy_from_slice(to);
@@ -336,6 +387,7 @@ impl<G: Given> System for Trials<'_, G> {
     }
 
     fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
+        self.equations.prove(self.solver).map_err(Failure::Trial)?;
         self.equations.accept(self.solver);
         Ok(())
     }

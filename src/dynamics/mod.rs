@@ -12,9 +12,11 @@
 //! | `error` | reasons for which a motion stops |
 //! | `given` | what comes from outside: inputs |
 //! | `state` | [`FreeState`]: all numbers on which a motion depends |
+//! | `charts` | the coordinates in which the freedoms are integrated |
 //! | `equations` | the right-hand side |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
 
+mod charts;
 mod equations;
 mod error;
 mod given;

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use super::charts::{Charts, EXCHANGE};
 use super::equations::{Equations, Trials};
 use super::error::Error;
 use super::given::Given;
-use super::integrator::{ErrorControl, Integrator, Method, Statistics};
+use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
 use super::state::FreeState;
-use crate::kinematics::{Pose, Solver};
+use crate::kinematics::{Pose, Solution, Solver};
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
@@ -17,6 +18,10 @@ use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 pub struct FreeMotion {
     equations: Equations,
     integrator: Integrator,
+    tolerance: f64,
+    /// The mechanism's size at the start \[m\].
+    size: f64,
+    charts: Charts,
     /// Values and velocities of the freedoms, and the work done since the energy was noted.
     x: Vec<f64>,
     /// Energy of the bodies without that of springs when the work was zero \[J\].
@@ -38,12 +43,18 @@ impl FreeMotion {
         let count = equations.freedoms.len();
         let mut x = vec![0.0; 2 * count + 1];
         write_start(&equations.freedoms, solver.pose(), &mut x);
-        let control = ErrorControl::new(tolerance, scales(solver, &equations.freedoms))
-            .map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        let (charts, size) = (
+            Charts::new(solver.mechanism(), &equations.freedoms),
+            solver.size(),
+        );
+        let control = ErrorControl::new(tolerance, charts.scales(size)).map_err(unusable)?;
         let start = solver.pose().time;
-        let integrator = Integrator::new(Method::Automatic, control, start, x.clone())
-            .map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        let integrator = Integrator::new(Method::Automatic, control, start, x.clone());
+        let integrator = integrator.map_err(unusable)?;
         Ok(Some(Self {
+            tolerance,
+            size,
+            charts,
             equations,
             integrator,
             x,
@@ -71,6 +82,27 @@ impl FreeMotion {
         self.equations.accepted.energy - self.energy - work
     }
 
+    /// Sets the relative tolerance.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Integrator`] unless it is above 0 and below 1.
+    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Error> {
+        if tolerance.to_bits() != self.tolerance.to_bits() {
+            self.set_control(tolerance)?;
+            self.tolerance = tolerance;
+        }
+        Ok(())
+    }
+
+    /// Controls errors with a tolerance in the coordinates in use.
+    fn set_control(&mut self, tolerance: f64) -> Result<(), Error> {
+        let control = ErrorControl::new(tolerance, self.charts.scales(self.size));
+        control
+            .and_then(|control| self.integrator.set_control(control))
+            .map_err(unusable)
+    }
+
     /// Returns the integrator's work.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
@@ -89,6 +121,8 @@ impl FreeMotion {
         let accepted = &self.equations.accepted;
         FreeState {
             integrator: self.integrator.state().clone(),
+            tolerance: self.tolerance,
+            coordinates: self.charts.current().to_vec(),
             drivers: accepted.drivers.clone(),
             loads: accepted.loads.clone(),
             energies: [accepted.energy, self.energy],
@@ -99,19 +133,45 @@ impl FreeMotion {
     pub fn save(&self, state: &mut FreeState) {
         let accepted = &self.equations.accepted;
         state.integrator.copy_from(self.integrator.state());
+        state.tolerance = self.tolerance;
+        state.coordinates.copy_from_slice(self.charts.current());
         state.drivers.copy_from_slice(&accepted.drivers);
         state.loads.copy_from_slice(&accepted.loads);
         state.energies = [accepted.energy, self.energy];
     }
 
-    /// Goes on from a state of the same mechanism, with the solver at the pose that belongs to it.
+    /// Makes the solver that of the coordinates of a state, at any pose, and gives the solution its
+    /// forces.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Integrator`] for coordinates that are none of the mechanism.
+    pub fn select(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        state: &FreeState,
+    ) -> Result<(), Error> {
+        if self.charts.current() == state.coordinates {
+            return Ok(());
+        }
+        if !self.charts.select(solver, solution, &state.coordinates) {
+            let why = "its coordinates are none of this mechanism";
+            return Err(Error::Integrator(why.to_owned()));
+        }
+        self.set_control(self.tolerance)
+    }
+
+    /// Goes on from a state of the same mechanism, with the solver [of its coordinates](Self::select)
+    /// at the pose that belongs to it.
     ///
     /// # Errors
     ///
     /// [`Error::Integrator`] for a state that no motion of this mechanism can have.
     pub fn resume(&mut self, solver: &Solver, state: &FreeState) -> Result<(), Error> {
+        self.set_tolerance(state.tolerance)?;
         let restored = self.integrator.restore(&state.integrator);
-        restored.map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        restored.map_err(unusable)?;
         self.energy = state.energies[1];
         self.equations.resume(solver, state);
         Ok(())
@@ -198,7 +258,8 @@ impl FreeMotion {
         self.renew(solver, given)
     }
 
-    /// Moves the mechanism on to a time.
+    /// Moves the mechanism on to a time. Near a dead point of the coordinates in use it goes on in
+    /// others: the solver is another one then, and the solution has its forces.
     ///
     /// # Errors
     ///
@@ -207,34 +268,70 @@ impl FreeMotion {
     pub fn advance(
         &mut self,
         solver: &mut Solver,
+        solution: &mut Solution,
         given: &impl Given,
         until: f64,
     ) -> Result<(), Error> {
-        let mut trials = Trials {
-            solver,
-            equations: &mut self.equations,
-            given,
-        };
         while self.integrator.state().t.to_bits() != until.to_bits() {
-            if let Err(error) = self.integrator.advance(&mut trials, until) {
+            let mut trials = Trials {
+                solver,
+                equations: &mut self.equations,
+                given,
+            };
+            let step = self.integrator.advance(&mut trials, until);
+            if let Err(error) = step {
                 self.equations.return_to_accepted(solver);
                 return Err(error.into());
             }
+            let equations = self.equations.motion();
+            if let Some(coordinates) = self.charts.better(solver, equations, EXCHANGE) {
+                self.exchange(solver, solution, given, coordinates)?;
+            }
         }
         Ok(())
+    }
+
+    /// Goes on in other coordinates, if they are coordinates of the mechanism.
+    fn exchange(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        given: &impl Given,
+        coordinates: Vec<usize>,
+    ) -> Result<(), Error> {
+        let Self {
+            equations,
+            integrator,
+            charts,
+            x,
+            ..
+        } = self;
+        x.copy_from_slice(&integrator.state().x);
+        let rates = equations.motion().coasting();
+        if !charts.exchange(solver, solution, coordinates, rates, x) {
+            return Ok(());
+        }
+        self.set_control(self.tolerance)?;
+        self.go_on(solver, given)
     }
 
     /// Begins a smooth part of the motion at the solver's pose, with the values in `x`.
     fn renew(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let count = self.freedoms().len();
         self.x[2 * count] = 0.0;
+        self.go_on(solver, given)?;
+        self.energy = self.equations.accepted.energy;
+        Ok(())
+    }
+
+    /// Accepts the solver's pose with the values in `x`, from which the integrator goes on.
+    fn go_on(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let time = solver.pose().time;
         let restarted = self.integrator.restart_at(time, &self.x);
-        restarted.map_err(|invalid| Error::Integrator(invalid.to_string()))?;
+        restarted.map_err(unusable)?;
         self.equations.set_drivers(solver, given, time, &self.x);
         self.equations.write(solver, &mut self.x)?;
         self.equations.accept(solver);
-        self.energy = self.equations.accepted.energy;
         Ok(())
     }
 }
@@ -254,25 +351,7 @@ fn start_velocity(mechanism: &Mechanism, freedom: DriverId) -> f64 {
     }
 }
 
-/// Returns the natural size of each component of x: a radian or the mechanism's size, the same per
-/// second; the work is left out of error control.
-fn scales(solver: &Solver, freedoms: &[DriverId]) -> Vec<f64> {
-    let mechanism = solver.mechanism();
-    let of = |freedom: &DriverId| {
-        if mechanism.drivers[freedom.index()]
-            .coordinate
-            .kind
-            .is_angle()
-        {
-            1.0
-        } else {
-            solver.size()
-        }
-    };
-    let values = freedoms.iter().map(of);
-    values
-        .clone()
-        .chain(values)
-        .chain([f64::INFINITY])
-        .collect()
+/// Returns the error of what the integrator refuses.
+fn unusable(invalid: Invalid) -> Error {
+    Error::Integrator(invalid.to_string())
 }

@@ -9,6 +9,11 @@ use crate::mechanism::Jet;
 pub struct FreeState {
     /// Values and velocities of the freedoms, the work, and the integrator's own numbers.
     pub integrator: State,
+    /// Relative tolerance.
+    pub tolerance: f64,
+    /// The coordinates in use, one per freedom: the file's own freedoms come first, then those of
+    /// joints.
+    pub coordinates: Vec<usize>,
     /// Value, velocity and acceleration of each driver at the present point.
     pub drivers: Vec<Jet>,
     /// Sizes of the forces that are inputs there.
@@ -21,8 +26,10 @@ impl FreeState {
     /// Copies another state of the same mechanism. Allocates nothing.
     pub fn copy_from(&mut self, other: &Self) {
         self.integrator.copy_from(&other.integrator);
+        self.coordinates.copy_from_slice(&other.coordinates);
         self.drivers.copy_from_slice(&other.drivers);
         self.loads.copy_from_slice(&other.loads);
+        self.tolerance = other.tolerance;
         self.energies = other.energies;
     }
 }

@@ -168,6 +168,12 @@ pub trait Model: Sized {
     /// Sets the time \[s\]: the start time, or any time in model exchange.
     fn set_time(&mut self, time: f64);
 
+    /// Takes the host's relative tolerance, before initialization. Models that compute to rounding
+    /// leave it aside.
+    fn set_tolerance(&mut self, tolerance: f64, log: &Logger) {
+        let _ = (tolerance, log);
+    }
+
     /// Restores the model as it was loaded.
     fn reset(&mut self);
 

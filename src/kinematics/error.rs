@@ -10,7 +10,7 @@ use crate::mechanism::{ProfileError, show_time, shown, shown_apart};
 #[non_exhaustive]
 pub enum Error {
     /// More or less is driven than is free to move.
-    #[error("{}", structure_message(*.freedom, *.drivers, *.free, .loose, .slots, .excess))]
+    #[error("{}", structure_message(*.freedom, *.drivers, *.free, .loose, .slots, .excess, .line.as_deref()))]
     Structure {
         /// Degrees of freedom that joints and constraints leave.
         freedom: usize,
@@ -22,6 +22,8 @@ pub enum Error {
         loose: Vec<String>,
         /// Slots on whose points one of these bodies may only turn: kind and name of each.
         slots: Vec<String>,
+        /// A line for one of them in the mechanism file.
+        line: Option<String>,
         /// Drivers of which one is too many, or joints and constraints that hold a coordinate that
         /// a driver drives: kind and name of each.
         excess: Vec<String>,
@@ -446,6 +448,7 @@ fn structure_message(
     loose: &[String],
     slots: &[String],
     excess: &[String],
+    line: Option<&str>,
 ) -> String {
     let count = |number: usize, singular: &str, plural: &str| match number {
         0 => format!("no {singular}"),
@@ -473,6 +476,12 @@ fn structure_message(
     }
     if !excess.is_empty() {
         message += &format!("; too many: remove one of {}", list(excess, ", "));
+    }
+    if let Some(line) = line {
+        message += &format!(
+            "; `{line}` under `[drivers]`, with a `start` or a `motion`, drives it, and under \
+             `[freedoms]` the forces move it"
+        );
     }
     message
 }

@@ -6,6 +6,7 @@ use super::analysis::{
     self, Direction, GeometryWarning, InstantCentre, Modes, Range, RangeSettings, Sensitivity,
 };
 use super::assembly::estimate::{Move, estimate, moves};
+use super::constraint::Constraint;
 use super::continuation::{Blocked, PathTracker, Progress};
 use super::error::Error;
 use super::forces::{
@@ -250,6 +251,13 @@ impl Solver {
         self.state.resume(&mut self.compiled, pose, choices)
     }
 
+    /// Returns whether the bodies are where they are at another pose, apart from rounding.
+    #[must_use]
+    pub fn is_near(&self, pose: &Pose) -> bool {
+        let turns = self.state.whole_turns_since(&self.compiled.system, pose);
+        turns.is_some_and(|turns| turns.iter().all(|turns| *turns == 0.0))
+    }
+
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
     /// nothing.
     pub fn save(&self, pose: &mut Pose) {
@@ -289,6 +297,13 @@ impl Solver {
     #[must_use]
     pub fn measure(&self, index: usize, rates: &Rates) -> Jet {
         self.state.measure(&*self.compiled.measures[index], rates)
+    }
+
+    /// Returns value, rate and acceleration of a relation, such as that of a
+    /// [coordinate](super::constraint::of_coordinate), at the present pose. Allocates nothing.
+    #[must_use]
+    pub fn coordinate(&self, relation: &dyn Constraint, rates: &Rates) -> Jet {
+        self.state.measure(relation, rates)
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.

@@ -389,6 +389,8 @@ pub enum DriverSource {
         start: f64,
         /// Velocity at the start \[m/s or rad/s\].
         velocity: f64,
+        /// The file's own coordinate, where the motion is integrated in another one.
+        named: Option<Coordinate>,
     },
 }
 

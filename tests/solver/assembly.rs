@@ -171,7 +171,9 @@ fn drivers_have_to_match_the_degrees_of_freedom() {
     assert_eq!(
         error.to_string(),
         "the mechanism has 1 degree of freedom and no driver; free to move: body `crank`, body \
-         `coupler`, body `rocker`: add a driver for one of them"
+         `coupler`, body `rocker`: add a driver for one of them; `turn = { coordinate = \"angle\", \
+         markers = [\"ground.O2\", \"crank.O\"] }` under `[drivers]`, with a `start` or a `motion`, \
+         drives it, and under `[freedoms]` the forces move it"
     );
 
     let twice = four_bar().replace(

@@ -159,7 +159,17 @@ fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
         };
         format!("{} ({source})", driver.name)
     });
-    line("drivers", drivers.len(), drivers.collect());
+    let drivers: Vec<_> = drivers.collect();
+    let (free, driven): (Vec<_>, Vec<_>) = mechanism
+        .drivers
+        .iter()
+        .zip(drivers)
+        .partition(|(driver, _)| driver.is_free());
+    let names = |list: Vec<(_, String)>| list.into_iter().map(|(_, text)| text).collect();
+    line("drivers", driven.len(), names(driven));
+    if !free.is_empty() {
+        line("freedoms", free.len(), names(free));
+    }
     let mut title = mechanism.name.clone();
     if !mechanism.description.is_empty() {
         let _ = write!(title, ": {}", mechanism.description);
@@ -206,11 +216,17 @@ fn describe_pose(solver: &mut Solver) -> String {
     }
     // The Jacobian with all drivers is regular: one driver per degree of freedom.
     let count = mechanism.drivers.len();
-    let _ = writeln!(
-        out,
-        "  {:<20}{count:>4}    all driven",
-        "degrees of freedom"
-    );
+    let free = mechanism
+        .drivers
+        .iter()
+        .filter(|driver| driver.is_free())
+        .count();
+    let how = match free {
+        0 => "all driven".to_owned(),
+        _ if free == count => "all free".to_owned(),
+        _ => format!("{} driven, {free} free", count - free),
+    };
+    let _ = writeln!(out, "  {:<20}{count:>4}    {how}", "degrees of freedom");
     let _ = writeln!(out, "\nassembled at");
     for (driver, value) in mechanism.drivers.iter().zip(&solver.pose().drivers) {
         let value = with_unit(driver.coordinate.kind, *value);

@@ -254,7 +254,8 @@ impl Run {
 
 /// Returns a note if nothing moves, with an example of a motion.
 fn note_of_rest(mechanism: &Mechanism, scenario: &Scenario) -> Option<Message> {
-    if scenario.signals.has_drivers() || scenario.mechanism.uses_time() {
+    let moves_freely = scenario.mechanism.drivers.iter().any(Driver::is_free);
+    if moves_freely || scenario.signals.has_drivers() || scenario.mechanism.uses_time() {
         return None;
     }
     let duration = mechanism.simulation.stop - mechanism.simulation.start;

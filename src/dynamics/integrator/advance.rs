@@ -110,6 +110,20 @@ impl Integrator {
         &self.state
     }
 
+    /// Replaces tolerance and scales.
+    ///
+    /// # Errors
+    ///
+    /// [`Invalid::Length`] for another number of components; nothing is changed then.
+    pub fn set_control(&mut self, control: ErrorControl) -> Result<(), Invalid> {
+        let [given, expected] = [control.order(), self.control.order()];
+        if given != expected {
+            return Err(Invalid::Length { given, expected });
+        }
+        self.control = control;
+        Ok(())
+    }
+
     /// Replaces the state by one of an integrator with the same options.
     ///
     /// # Errors

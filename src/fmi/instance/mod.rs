@@ -283,7 +283,12 @@ impl<M: Model> Instance<M> {
             })
     }
 
-    /// `fmi2SetupExperiment`: start and stop time \[s\]. The tolerance has no effect.
+    /// Takes the host's tolerance, with which a model that integrates works.
+    pub fn set_tolerance(&mut self, tolerance: f64) {
+        self.model.set_tolerance(tolerance, &self.logger);
+    }
+
+    /// `fmi2SetupExperiment`: start and stop time \[s\].
     ///
     /// # Errors
     ///

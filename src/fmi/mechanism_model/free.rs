@@ -111,6 +111,7 @@ impl MechanismModel {
         let Self {
             free: Some(free),
             solver,
+            solution,
             path,
             course,
             ..
@@ -127,7 +128,7 @@ impl MechanismModel {
         let moved = free
             .resume(solver, state)
             .and_then(|()| free.jump(solver, &given, &path.to))
-            .and_then(|()| free.advance(solver, &given, end));
+            .and_then(|()| free.advance(solver, solution, &given, end));
         free.save(state);
         let taken = free.statistics().accepted.wrapping_sub(steps);
         let progress = &mut course.path_progress.substeps;
@@ -173,6 +174,14 @@ impl MechanismModel {
             free.save(state);
         }
         Ok(())
+    }
+
+    /// Lets the solver be that of the coordinates of the committed pose.
+    pub(super) fn select_coordinates(&mut self) {
+        if let (Some(free), Some(state)) = (&mut self.free, &self.course.free) {
+            let selected = free.select(&mut self.solver, &mut self.solution, state);
+            debug_assert!(selected.is_ok(), "the coordinates were in use");
+        }
     }
 
     /// Solves the accelerations of freedoms at the pose, which is up to date.

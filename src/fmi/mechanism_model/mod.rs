@@ -90,6 +90,8 @@ pub struct MechanismModel {
     path: Path,
     /// The motion of freedoms, if the mechanism has some.
     free: Option<FreeMotion>,
+    /// Its state at the file's own values.
+    file_free: Option<FreeState>,
     /// The step that is being taken in parts.
     parts: Option<Box<Parts>>,
     /// Time of the dead point in front of which the last step has stopped.
@@ -234,6 +236,7 @@ impl MechanismModel {
             variables,
             course: Course::new(&mechanism, &solution, &file_pose, &file_choices, free_state),
             solution,
+            file_free: free.as_ref().map(FreeMotion::state),
             free,
             file_choices,
             path,
@@ -337,9 +340,22 @@ impl Model for MechanismModel {
         self.set_freshness(Freshness::Stale);
     }
 
+    fn set_tolerance(&mut self, tolerance: f64, log: &Logger) {
+        let (Some(free), Some(state)) = (&mut self.free, &mut self.course.free) else {
+            return;
+        };
+        match free.set_tolerance(tolerance) {
+            Ok(()) => state.tolerance = tolerance,
+            Err(error) => log.warn(&format!(
+                "{error}: the free motion is integrated with {}",
+                state.tolerance
+            )),
+        }
+    }
+
     fn reset(&mut self) {
         let (start, choices) = (&self.file_pose, &self.file_choices);
-        let free = self.free.as_ref().map(FreeMotion::state);
+        let free = self.file_free.clone();
         self.course = Course::new(&self.mechanism, &self.solution, start, choices, free);
         self.return_to_committed();
         self.solution.driver_rates.fill(Jet::constant(0.0));

@@ -261,6 +261,7 @@ impl MechanismModel {
 
     /// Puts the solver back to the committed pose, with the choices that it had there.
     pub(super) fn return_to_committed(&mut self) {
+        self.select_coordinates();
         let course = &self.course;
         let resumed = (self.solver).resume(&course.committed, &course.committed_choices);
         debug_assert!(resumed, "the choices are the solver's own");

@@ -56,6 +56,7 @@ impl MechanismModel {
     pub(super) fn restore_state(&mut self, state: &MechanismState) {
         self.course.clone_from(&state.course);
         (self.solution.driver_rates).copy_from_slice(&state.driver_rates);
+        self.select_coordinates();
         let resumed = (self.solver).resume(&state.present, &state.present_choices);
         debug_assert!(resumed, "the choices were checked when the state was read");
         self.reals.invalidate();
@@ -79,11 +80,9 @@ impl MechanismModel {
                 check_value(variable, value).map_err(|error| error.to_string())?;
             }
         }
-        if let (Some(free), Some(state)) = (&mut self.free, &state.course.free) {
-            let resumed = free.resume(&self.solver, state);
-            resumed.map_err(|error| error.to_string())?;
-        }
+        self.check_free(self.file_free.clone().as_ref())?;
         self.check_pose(&state.course.start_pose)?;
+        self.check_free(state.course.free.as_ref())?;
         for (pose, choices) in [
             (&state.course.committed, &state.course.committed_choices),
             (&state.present, &state.present_choices),
@@ -98,6 +97,17 @@ impl MechanismModel {
             state.course.start_pose = Arc::clone(&self.file_pose);
         }
         Ok(())
+    }
+
+    /// Checks that freedoms can be in a state, and lets the solver be that of its coordinates.
+    fn check_free(&mut self, state: Option<&FreeState>) -> Result<(), String> {
+        let (Some(free), Some(state)) = (&mut self.free, state) else {
+            return Ok(());
+        };
+        let selected = free.select(&mut self.solver, &mut self.solution, state);
+        selected
+            .and_then(|()| free.resume(&self.solver, state))
+            .map_err(|error| error.to_string())
     }
 
     /// Checks that the equations exist at a pose and hold there.
@@ -200,11 +210,15 @@ impl MechanismState {
 fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unreadable> {
     let FreeState {
         integrator,
+        tolerance,
+        coordinates,
         drivers,
         loads,
         energies,
     } = free;
     integrator.visit(|word| codec.word(word))?;
+    codec.finite(tolerance)?;
+    codec.each(coordinates, Codec::index)?;
     for rates in drivers {
         codec.real(&mut rates.value)?;
         codec.each(&mut rates.derivatives, Codec::real)?;

@@ -49,6 +49,18 @@ impl EquationsOfMotion {
         }
     }
 
+    /// Returns ∂q/∂u of a driver, as velocities.
+    #[must_use]
+    pub fn unit(&self, driver: DriverId) -> &Rates {
+        &self.units[driver.index()]
+    }
+
+    /// Returns the rates of q where no driver accelerates.
+    #[must_use]
+    pub fn coasting(&self) -> &Rates {
+        &self.coasting
+    }
+
     /// Solves ∂q/∂u of each driver at the pose, at which the plan is factorised.
     fn solve_units(&mut self, compiled: &mut CompiledMechanism, state: &mut State) {
         if let ([unit], true) = (&mut self.units[..], state.has_single_driver()) {

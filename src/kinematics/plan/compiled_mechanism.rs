@@ -7,7 +7,7 @@ use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::system::structure::{Block, Structure};
 use crate::kinematics::system::{System, Target, Targets};
-use crate::mechanism::{DriverId, Mechanism};
+use crate::mechanism::{DriverId, DriverSource, Mechanism};
 
 /// The equations of a mechanism and the way in which they are solved.
 #[derive(Debug)]
@@ -17,6 +17,8 @@ pub(in crate::kinematics) struct CompiledMechanism {
     pub(in crate::kinematics) plan: BlockPlan,
     pub(in crate::kinematics) redundant: RedundantRows,
     pub(in crate::kinematics) measures: Vec<Box<dyn Constraint>>,
+    /// Per driver: the file's own coordinate of a freedom that is integrated in another one.
+    pub(in crate::kinematics) named: Vec<Option<Box<dyn Constraint>>>,
 }
 
 /// The rows of Phi that are redundant, and those set aside instead of them.
@@ -54,6 +56,12 @@ impl CompiledMechanism {
         let measures = mechanism.measures.iter();
         let measures = measures.map(|measure| of_coordinate(&measure.coordinate));
         let measures = measures.collect();
+        let named = mechanism.drivers.iter();
+        let named = named.map(|driver| match &driver.source {
+            DriverSource::Free { named, .. } => named.as_ref().map(of_coordinate),
+            _ => None,
+        });
+        let named = named.collect();
         let system = System::new(mechanism);
         let structure = Structure::new(&system, &[]);
         let pairs_up = structure.is_some();
@@ -63,6 +71,7 @@ impl CompiledMechanism {
             structure,
             redundant: RedundantRows::default(),
             measures,
+            named,
             system,
         };
         (compiled, pairs_up)

@@ -9,7 +9,7 @@ use crate::kinematics::linear::{Echelon, ReducedRow, Row};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
-use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism};
+use crate::mechanism::{BodyId, DriverId, JointKind, MarkerId, Mechanism};
 
 /// A row of which no more than this is left, scaled, depends on the others. A singular position
 /// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
@@ -155,11 +155,16 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
     excess.sort_unstable();
     excess.dedup();
     let loose = moved_by(system, &ranks.echelon);
+    let slots = suspect_slots(mechanism, &loose);
+    let fits_otherwise = slots.is_empty() && excess.is_empty();
     Err(Error::Structure {
         freedom,
         drivers: mechanism.drivers.len(),
         free,
-        slots: suspect_slots(mechanism, &loose),
+        slots,
+        line: fits_otherwise
+            .then(|| coordinate_line(mechanism, &loose))
+            .flatten(),
         loose,
         excess: excess
             .into_iter()
@@ -183,6 +188,32 @@ fn suspect_slots(mechanism: &Mechanism, loose: &[String]) -> Vec<String> {
     joints
         .map(|joint| format!("joint `{}`", joint.name))
         .collect()
+}
+
+/// Returns a line that names the coordinate of a joint of a body that is free to move, of a joint
+/// with ground if there is one.
+fn coordinate_line(mechanism: &Mechanism, loose: &[String]) -> Option<String> {
+    let body = |marker: MarkerId| mechanism.markers[marker.index()].body;
+    let name = |body: BodyId| &mechanism.bodies[body.index()].name;
+    let is_loose = |marker: MarkerId| {
+        body(marker).is_some_and(|body| loose.contains(&format!("body `{}`", name(body))))
+    };
+    let coordinate = |kind: &JointKind| match kind {
+        JointKind::Revolute => Some("angle"),
+        JointKind::Translational | JointKind::Slot => Some("x"),
+        _ => None,
+    };
+    let joints = mechanism.joints.iter();
+    let moving = joints.filter(|joint| is_loose(joint.from) || is_loose(joint.to));
+    let joint = moving
+        .filter(|joint| coordinate(&joint.kind).is_some())
+        .min_by_key(|joint| body(joint.from).is_some() && body(joint.to).is_some())?;
+    let [from, to] = [joint.from, joint.to].map(|marker| mechanism.marker_path(marker));
+    let kind = coordinate(&joint.kind)?;
+    Some(format!(
+        "{} = {{ coordinate = \"{kind}\", markers = [\"{from}\", \"{to}\"] }}",
+        if kind == "angle" { "turn" } else { "travel" },
+    ))
 }
 
 /// Returns the ranks at the present places of the bodies.

@@ -18,9 +18,12 @@ impl Solver {
             }
             Signal::Marker(marker, component) => self.marker(marker, rates)[component],
             Signal::Measure(measure) => self.measure(measure, rates),
-            Signal::Motion(driver) => Jet {
-                value: self.pose().drivers[driver.index()],
-                ..driver_rates[driver.index()]
+            Signal::Motion(driver) => match &self.compiled.named[driver.index()] {
+                Some(own) => self.coordinate(&**own, rates),
+                None => Jet {
+                    value: self.pose().drivers[driver.index()],
+                    ..driver_rates[driver.index()]
+                },
             },
         }
     }

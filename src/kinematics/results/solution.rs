@@ -83,6 +83,11 @@ impl Solution {
         self.forces = Some(forces);
     }
 
+    /// Exchanges the forces with those of a solver of the same mechanism in other coordinates.
+    pub fn exchange_forces(&mut self, forces: &mut Option<Forces>) {
+        std::mem::swap(&mut self.forces, forces);
+    }
+
     /// Leaves out reactions, unless contacts may pull: efforts exist where reactions have no limit.
     pub fn leave_out_reactions(&mut self) {
         self.parts.reactions = !self.lifted.is_empty();

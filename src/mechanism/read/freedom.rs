@@ -57,6 +57,7 @@ impl<'a> Context<'a> {
                 None if keys.velocity.key.is_none() => 0.0,
                 None => return None,
             },
+            named: None,
         };
         Some(Driver {
             name: entry.name().to_owned(),

@@ -115,7 +115,8 @@ impl<'a> Context<'a> {
         }
         self.declare(&root);
         let (parameters, derivation_order) = self.parameters(root.parameters.items());
-        let simulation = self.simulation(&root.simulation.or_empty());
+        let has_freedoms = !root.freedoms.items().is_empty();
+        let simulation = self.simulation(&root.simulation.or_empty(), has_freedoms);
         let (bodies, markers) = self.bodies(&root.ground, &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let mut drivers = self.each(&root.drivers, driver);

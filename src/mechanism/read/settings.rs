@@ -34,7 +34,8 @@ table! {
         stop: Quantity = TIME,
         /// Communication step; a 500th of the duration if left out.
         step: Quantity = TIME.positive(),
-        /// Tolerance for hosts; biela solves to rounding.
+        /// Relative tolerance of free motion, by default 1e-8; without freedoms for hosts alone, by
+        /// default 1e-6.
         tolerance: Quantity = RATIO.positive(),
         /// Acceleration of gravity; [0, -9.81] if left out.
         gravity: [Quantity; 2] = Array::new("[x, y]", [NUMBER.in_unit(Unit::METRE_PER_SECOND_SQUARED); 2]),
@@ -88,7 +89,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    pub(super) fn simulation(&mut self, fields: &Fields<'a>) -> Simulation {
+    pub(super) fn simulation(&mut self, fields: &Fields<'a>, has_freedoms: bool) -> Simulation {
         let keys = self.table::<SimulationKeys<'a>>(fields);
         let [start, stop] = [(&keys.start, 0.0), (&keys.stop, 1.0)]
             .map(|(field, default)| field.number().unwrap_or(default));
@@ -111,12 +112,25 @@ impl<'a> Context<'a> {
             let message = "from `start` to `stop` is too far or too near to be divided into steps";
             self.error(code::ILLEGAL_VALUE, fields.place.clone(), message);
         }
+        if let Some(tolerance) = keys
+            .tolerance
+            .number()
+            .filter(|tolerance| *tolerance >= 1.0)
+            && has_freedoms
+        {
+            let message = format!("`tolerance` = {tolerance} is none for a free motion");
+            self.error(code::OUT_OF_RANGE, keys.tolerance.span.clone(), message)
+                .suggest("relative to the values: above 0 and below 1, such as 1e-8");
+        }
         let gravity = keys.gravity.expressions();
         Simulation {
             start,
             stop,
             step,
-            tolerance: keys.tolerance.number().unwrap_or(1e-6),
+            tolerance: keys.tolerance.number().unwrap_or(match has_freedoms {
+                true => 1e-8,
+                false => 1e-6,
+            }),
             gravity: gravity.unwrap_or_else(|| GRAVITY.map(Expression::constant)),
             rates: keys.rates.value.unwrap_or_default(),
             extrapolation: keys.extrapolation.value.unwrap_or_default(),

@@ -101,14 +101,18 @@ instance_calls! {
     };
     /// `fmi2SetupExperiment`.
     fmi2SetupExperiment(
-        _tolerance_defined: i32,
-        _tolerance: f64,
+        tolerance_defined: i32,
+        tolerance: f64,
         start_time: f64,
         stop_time_defined: i32,
         stop_time: f64,
     ) = |instance| {
         let stop_time = (stop_time_defined != 0).then_some(stop_time);
-        instance.setup_experiment(start_time, stop_time)
+        instance.setup_experiment(start_time, stop_time)?;
+        if tolerance_defined != 0 {
+            instance.set_tolerance(tolerance);
+        }
+        Ok(())
     };
     /// `fmi2EnterInitializationMode`.
     fmi2EnterInitializationMode() = |instance| instance.enter_initialization_mode();

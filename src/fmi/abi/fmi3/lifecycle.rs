@@ -202,13 +202,17 @@ instance_calls! {
     };
     /// `fmi3EnterInitializationMode`.
     fmi3EnterInitializationMode(
-        _tolerance_defined: bool,
-        _tolerance: f64,
+        tolerance_defined: bool,
+        tolerance: f64,
         start_time: f64,
         stop_time_defined: bool,
         stop_time: f64,
     ) = |instance| {
         let stop_time = stop_time_defined.then_some(stop_time);
+        instance.allow(Call::EnterInitializationMode)?;
+        if tolerance_defined {
+            instance.set_tolerance(tolerance);
+        }
         instance.enter_initialization_mode_at(start_time, stop_time)
     };
     /// `fmi3ExitInitializationMode`.

@@ -1,0 +1,270 @@
+//! The choice of coordinates in which the freedoms are integrated.
+//!
+//! A coordinate is of no use near its dead point, such as the angle of a rocker at the end of its
+//! swing. The motion goes on in another one then: all freedoms and the relative coordinates of all
+//! joints are candidates. A mechanism with one set of them as its freedoms is a chart, with a
+//! solver of its own, which is compiled when it is first needed.
+
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use crate::kinematics::constraint::{Constraint, of_coordinate};
+use crate::kinematics::{EquationsOfMotion, Forces, Rates, Solution, Solver};
+use crate::mechanism::{
+    Coordinate, CoordinateKind, DriverId, DriverSource, Jet, JointKind, Mechanism,
+};
+
+/// The motion goes on in other coordinates if these move by so much, per unit of those in use:
+/// their sines are below a third then, and the equations lose less than a digit.
+pub(super) const EXCHANGE: f64 = 3.0;
+/// It returns to the file's own freedoms if these move by such a part of the best ones: more than
+/// at the exchange, so that the two do not alternate.
+const RETURN: f64 = 0.5;
+
+/// The charts of a mechanism.
+#[derive(Debug)]
+pub(super) struct Charts {
+    freedoms: Vec<DriverId>,
+    /// The file's freedoms, then the coordinates of joints.
+    candidates: Vec<Candidate>,
+    /// The candidates in use, one per freedom.
+    current: Vec<usize>,
+    /// Charts that are not in use.
+    others: Vec<Chart>,
+    /// Sets of candidates that are no coordinates of the mechanism.
+    unfit: Vec<Vec<usize>>,
+    /// ∂candidates/∂coordinates in use, scaled.
+    changes: DMatrix<f64>,
+    reduced: DMatrix<f64>,
+}
+
+#[derive(Debug)]
+struct Candidate {
+    coordinate: Coordinate,
+    relation: Box<dyn Constraint>,
+}
+
+impl Candidate {
+    /// Returns a radian or the mechanism's size.
+    fn scale(&self, size: f64) -> f64 {
+        if self.coordinate.kind.is_angle() {
+            1.0
+        } else {
+            size
+        }
+    }
+}
+
+/// A mechanism in other coordinates.
+#[derive(Debug)]
+struct Chart {
+    coordinates: Vec<usize>,
+    solver: Solver,
+    forces: Option<Forces>,
+}
+
+impl Charts {
+    /// Lists the candidates of a solver's mechanism, whose own freedoms are in use.
+    pub(super) fn new(mechanism: &Mechanism, freedoms: &[DriverId]) -> Self {
+        let own = freedoms
+            .iter()
+            .map(|id| mechanism.drivers[id.index()].coordinate);
+        let joints = mechanism.joints.iter().filter_map(|joint| {
+            let kind = match joint.kind {
+                JointKind::Revolute => CoordinateKind::Angle,
+                JointKind::Translational | JointKind::Slot => CoordinateKind::X,
+                _ => return None,
+            };
+            Some(Coordinate {
+                kind,
+                from: joint.from,
+                to: joint.to,
+                axes: joint.from,
+            })
+        });
+        let candidates: Vec<_> = own
+            .chain(joints)
+            .map(|coordinate| Candidate {
+                relation: of_coordinate(&coordinate),
+                coordinate,
+            })
+            .collect();
+        let count = freedoms.len();
+        Self {
+            freedoms: freedoms.to_vec(),
+            current: (0..count).collect(),
+            others: Vec::new(),
+            unfit: Vec::new(),
+            changes: DMatrix::zeros(candidates.len(), count),
+            reduced: DMatrix::zeros(candidates.len(), count),
+            candidates,
+        }
+    }
+
+    /// Returns the candidates in use, one per freedom.
+    pub(super) fn current(&self) -> &[usize] {
+        &self.current
+    }
+
+    /// Returns the natural size of each component of x, for a mechanism of this size \[m\]: a radian or
+    /// the size for values, the same per second for velocities. The work is left out of error control.
+    pub(super) fn scales(&self, size: f64) -> Vec<f64> {
+        let values = self.current.iter().map(|k| self.candidates[*k].scale(size));
+        values
+            .clone()
+            .chain(values)
+            .chain([f64::INFINITY])
+            .collect()
+    }
+
+    /// Returns coordinates in which the motion goes on better than in those in use, at the pose of
+    /// these equations. Allocates only if there are some.
+    pub(super) fn better(
+        &mut self,
+        solver: &Solver,
+        equations: &EquationsOfMotion,
+        least: f64,
+    ) -> Option<Vec<usize>> {
+        let size = solver.size();
+        for (column, freedom) in self.freedoms.iter().enumerate() {
+            let unit = equations.unit(*freedom);
+            let own = self.candidates[self.current[column]].scale(size);
+            for (row, candidate) in self.candidates.iter().enumerate() {
+                let change = solver.coordinate(&*candidate.relation, unit).first();
+                self.changes[(row, column)] = change * own / candidate.scale(size);
+            }
+        }
+        self.reduced.copy_from(&self.changes);
+        let count = self.freedoms.len();
+        let (best, volume) = largest_volume(&mut self.reduced);
+        let mut own = self.changes.rows(0, count).clone_owned();
+        let of_own = largest_volume(&mut own).1;
+        let own: Vec<usize> = (0..count).collect();
+        let prefers_own = of_own >= RETURN * volume && self.current != own;
+        let chosen = if prefers_own {
+            own
+        } else if volume > least {
+            best
+        } else {
+            return None;
+        };
+        (!self.unfit.contains(&chosen)).then_some(chosen)
+    }
+
+    /// Puts the chart with these candidates into use: the solver is that of the chart, anywhere, and
+    /// the solution has its forces. Returns false if they are no coordinates of the mechanism.
+    pub(super) fn select(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        coordinates: &[usize],
+    ) -> bool {
+        if self.current == coordinates {
+            return true;
+        }
+        let is_wanted = |chart: &Chart| chart.coordinates == coordinates;
+        let place = self.others.iter().position(is_wanted).or_else(|| {
+            let chart = self.compile(solver, coordinates)?;
+            self.others.push(chart);
+            Some(self.others.len() - 1)
+        });
+        let Some(place) = place else {
+            return false;
+        };
+        let chart = &mut self.others[place];
+        if chart.forces.is_none() && solution.forces().is_some() {
+            chart.forces = Some(chart.solver.forces());
+        }
+        std::mem::swap(solver, &mut chart.solver);
+        solution.exchange_forces(&mut chart.forces);
+        chart.coordinates = std::mem::replace(&mut self.current, coordinates.to_vec());
+        true
+    }
+
+    /// Moves on from the solver's pose, with these rates of q, in other coordinates. Writes their
+    /// values and velocities. Returns false, and changes nothing, if they are no coordinates of the
+    /// mechanism.
+    pub(super) fn exchange(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        coordinates: Vec<usize>,
+        rates: &Rates,
+        x: &mut [f64],
+    ) -> bool {
+        let count = coordinates.len();
+        let mut pose = solver.pose().clone();
+        pose.crossings.clear();
+        for (k, candidate) in coordinates.iter().enumerate() {
+            let relation = &*self.candidates[*candidate].relation;
+            let Jet { value, derivatives } = solver.coordinate(relation, rates);
+            pose.drivers[self.freedoms[k].index()] = value;
+            [x[k], x[count + k]] = [value, derivatives[0]];
+        }
+        if !self.select(solver, solution, &coordinates) {
+            self.unfit.push(coordinates);
+            return false;
+        }
+        solver.restore(&pose);
+        true
+    }
+
+    /// Compiles the mechanism with other coordinates as its freedoms, which start at the solver's
+    /// pose.
+    fn compile(&self, solver: &Solver, coordinates: &[usize]) -> Option<Chart> {
+        let mut mechanism = Mechanism::clone(solver.mechanism());
+        let still = Rates::new(solver.pose().q.len());
+        if coordinates.len() != self.freedoms.len() {
+            return None;
+        }
+        for (place, (freedom, candidate)) in self.freedoms.iter().zip(coordinates).enumerate() {
+            let driver = &mut mechanism.drivers[freedom.index()];
+            let candidate = self.candidates.get(*candidate)?;
+            driver.coordinate = candidate.coordinate;
+            if let DriverSource::Free { start, named, .. } = &mut driver.source {
+                *start = solver.coordinate(&*candidate.relation, &still).value;
+                *named = Some(self.candidates[place].coordinate);
+            }
+        }
+        let solver = Solver::new(Arc::new(mechanism)).ok()?;
+        Some(Chart {
+            coordinates: coordinates.to_vec(),
+            forces: None,
+            solver,
+        })
+    }
+}
+
+/// Returns as many rows as there are columns that span a large volume, by elimination with complete
+/// pivoting, and the volume. Uses up the matrix.
+fn largest_volume(rows: &mut DMatrix<f64>) -> (Vec<usize>, f64) {
+    let count = rows.ncols();
+    let mut chosen = vec![usize::MAX; count];
+    let mut volume = 1.0;
+    for _ in 0..count {
+        let (mut best, mut at) = (0.0, (0, 0));
+        for column in (0..count).filter(|column| chosen[*column] == usize::MAX) {
+            for row in 0..rows.nrows() {
+                let entry = rows[(row, column)].abs();
+                if entry > best {
+                    (best, at) = (entry, (row, column));
+                }
+            }
+        }
+        let (row, column) = at;
+        volume *= best;
+        if best == 0.0 {
+            return (Vec::new(), 0.0);
+        }
+        chosen[column] = row;
+        for other in (0..count).filter(|other| *other != column) {
+            let factor = rows[(row, other)] / rows[(row, column)];
+            for k in 0..rows.nrows() {
+                let entry = rows[(k, column)];
+                rows[(k, other)] -= factor * entry;
+            }
+        }
+    }
+    (chosen, volume)
+}
