@@ -211,6 +211,8 @@ impl Mechanism {
             .map(|d| {
                 let start = match d.source {
                     DriverSource::Input { start } => Some(start),
+                    // Left to the estimates if it is not a number.
+                    DriverSource::Free { start, .. } => Some(start).filter(|start| !start.is_nan()),
                     DriverSource::Motion(_) => None,
                 };
                 let (name, description) = (d.name.clone(), d.description.clone());

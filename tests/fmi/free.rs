@@ -2,7 +2,7 @@
 //! co-simulation.
 
 use biela::dynamics::integrator::{ErrorControl, Failure, Integrator, Method, System};
-use biela::fmi::{Causality, Error, Interface, MechanismModel, Version, value_reference};
+use biela::fmi::{Causality, Error, Interface, MechanismModel, StepProgress, Version, value_reference};
 use biela::mechanism::Mechanism;
 use std::sync::Arc;
 
@@ -45,6 +45,16 @@ fn running(name: &str, version: Version) -> Instance {
     instance
 }
 
+/// Takes a step, as a host of the instance's version does.
+fn step(instance: &mut Instance, t: f64, h: f64) {
+    if instance.version() == Version::Fmi2 {
+        instance.do_step(t, h).expect("it moves");
+    } else {
+        let progress = instance.begin_step(t, h).expect("it moves");
+        assert!(matches!(progress, StepProgress::Done(_)), "{progress:?}");
+    }
+}
+
 /// The step of a host: a thirtieth of the way that is sensible for each mechanism.
 fn step_size(name: &str) -> f64 {
     if name == "andrews_free" { 1e-3 } else { 0.02 }
@@ -62,7 +72,7 @@ fn go_on(instance: &mut Instance, name: &str, input: Option<&str>, from: u32) ->
         if let Some(input) = input {
             set(instance, [(input, 0.3 * (7.0 * t).cos())]);
         }
-        instance.do_step(t, h).expect("it moves");
+        step(instance, t, h);
         let values = instance.reals(&reals).expect("they exist");
         values.map(f64::to_bits).collect()
     });
@@ -155,7 +165,9 @@ fn derivatives_in_model_exchange_are_those_of_differences() {
                 instance.enter_continuous_time_mode().expect("legal");
             }
             let count = 2 * freedoms.len();
-            assert_eq!(instance.number_of_states(), Ok(count), "{name}");
+            if version == Version::Fmi3 {
+                assert_eq!(instance.number_of_states(), Ok(count), "{name}");
+            }
             // Away from rest, where much would vanish.
             let start: Vec<f64> = instance
                 .continuous_states(count)

@@ -121,7 +121,7 @@ fn a_motion_without_losses_returns() {
         let mut run = Run::new(&shipped(name), 1e-10, Fed::default());
         let start = run.state();
         run.to(until);
-        let [_, velocities, _] = run.freedoms();
+        let velocities: Vec<f64> = run.free.velocities().collect();
         let freedoms = run.free.freedoms().to_vec();
         let Run { solver, free, fed, .. } = &mut run;
         let back = |freedom| {

@@ -76,7 +76,11 @@ fn a_mass_flies_until_its_rods_are_stretched() {
             }
             Err(error) => {
                 let at = run.solver.pose().time;
-                println!("| stretched rods | stopped {:.1e} s before: {error} |", stretched - at);
+                println!(
+                    "| stretched rods | stopped {:.1e} s before: {error} | {:?} |",
+                    stretched - at,
+                    run.statistics()
+                );
                 assert!(at <= stretched + 1e-9, "stopped at {at}, stretched at {stretched}");
                 assert!(stretched - at < 1e-2, "stopped early, at {at}");
                 return;

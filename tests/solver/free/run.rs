@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use biela::dynamics::integrator::Statistics;
 use biela::dynamics::{Error, FreeMotion, Given};
-use biela::kinematics::Solver;
-use biela::mechanism::{DriverId, Jet, Mechanism};
+use biela::kinematics::{Solution, Solver};
+use biela::mechanism::{DriverId, Jet, Mechanism, Signal};
 
 use super::minimal::Minimal;
 use crate::common::assembled;
@@ -50,6 +50,7 @@ impl Given for Fed {
 /// A mechanism that moves freely.
 pub(super) struct Run {
     pub(super) solver: Solver,
+    pub(super) solution: Solution,
     pub(super) free: FreeMotion,
     pub(super) fed: Fed,
     /// Largest residual of the joints and largest error of the energy so far.
@@ -71,17 +72,41 @@ impl Run {
         let free = FreeMotion::new(&solver, tolerance)?;
         let mut free = free.expect("it has freedoms");
         free.start(&mut solver, &fed)?;
-        Ok(Self {
+        let mut run = Self::of(solver, free, fed);
+        run.solve();
+        Ok(run)
+    }
+
+    /// A motion with its solver, wherever they are.
+    pub(super) fn of(solver: Solver, free: FreeMotion, fed: Fed) -> Self {
+        Self {
+            solution: Solution::new(&solver),
             solver,
             free,
             fed,
             residual: 0.0,
             energy_error: 0.0,
-        })
+        }
+    }
+
+    /// Solves the rates of all bodies.
+    pub(super) fn solve(&mut self) {
+        let rates = &mut self.solution.driver_rates;
+        rates.copy_from_slice(self.free.drivers());
+        let solved = self.solution.solve_rates(&mut self.solver);
+        solved.expect("the pose is regular");
     }
 
     pub(super) fn try_to(&mut self, time: f64) -> Result<(), Error> {
-        self.free.advance(&mut self.solver, &self.fed, time)?;
+        let Self {
+            solver,
+            solution,
+            free,
+            fed,
+            ..
+        } = self;
+        free.advance(solver, solution, fed, time)?;
+        self.solve();
         self.residual = self.residual.max(self.solver.residual());
         self.energy_error = self.energy_error.max(self.free.energy_error().abs());
         Ok(())
@@ -93,11 +118,15 @@ impl Run {
         }
     }
 
-    /// Values, velocities and accelerations of the freedoms.
+    /// Values, velocities and accelerations of the file's freedoms, whatever coordinates are
+    /// integrated.
     pub(super) fn freedoms(&self) -> [Vec<f64>; 3] {
         let jets = || {
             let freedoms = self.free.freedoms().iter();
-            freedoms.map(|freedom| self.free.drivers()[freedom.index()])
+            freedoms.map(|freedom| {
+                let rates = (&self.solution.rates, &self.solution.driver_rates);
+                (self.solver).signal(Signal::Motion(*freedom), rates.0, rates.1)
+            })
         };
         [
             jets().map(|jet| jet.value).collect(),
@@ -120,11 +149,20 @@ impl Run {
 
 /// Largest error relative to 1 + |exact|.
 pub(super) fn error(found: &[f64], exact: &[f64]) -> f64 {
+    error_in([1.0; 2], found, exact)
+}
+
+/// Largest error relative to unit + |exact|, with units of the values in the first half and of the
+/// velocities in the second.
+fn error_in(units: [f64; 2], found: &[f64], exact: &[f64]) -> f64 {
     assert_eq!(found.len(), exact.len());
-    let pairs = found.iter().zip(exact);
-    pairs
-        .map(|(found, exact)| (found - exact).abs() / (1.0 + exact.abs()))
-        .fold(0.0, f64::max)
+    let half = found.len().div_ceil(2);
+    let pairs = found.iter().zip(exact).enumerate();
+    let errors = pairs.map(|(index, (found, exact))| {
+        let unit = if index < half { units[0] } else { units[1] };
+        (found - exact).abs() / (unit + exact.abs())
+    });
+    errors.fold(0.0, f64::max)
 }
 
 /// Equal steps from 0 to a time.
@@ -143,12 +181,25 @@ pub(super) fn assert_follows(
     exact: impl Fn(usize) -> Vec<f64>,
     kinetic_energy: f64,
 ) {
+    assert_follows_in([1.0; 2], name, mechanism, fed, times, exact, kinetic_energy);
+}
+
+/// Compares as above, errors being relative to these units of values and velocities.
+pub(super) fn assert_follows_in(
+    units: [f64; 2],
+    name: &str,
+    mechanism: &Arc<Mechanism>,
+    fed: Fed,
+    times: &[f64],
+    exact: impl Fn(usize) -> Vec<f64>,
+    kinetic_energy: f64,
+) {
     for (tolerance, mark) in MARKS {
         let mut run = Run::new(mechanism, tolerance, fed);
         let mut largest = 0.0_f64;
         for (index, time) in times.iter().enumerate() {
             run.to(*time);
-            largest = largest.max(error(&run.state(), &exact(index)));
+            largest = largest.max(error_in(units, &run.state(), &exact(index)));
         }
         let energy = run.energy_error / kinetic_energy;
         let Statistics {
