@@ -274,7 +274,9 @@ fn make(
         Request::SetTime(time) => (Call::SetTime, instance.set_time(time.get())),
         Request::GetContinuousStates(count) => (
             Call::GetContinuousStates,
-            instance.continuous_states(usize::from(*count)).map(drop),
+            instance
+                .continuous_states(usize::from(*count))
+                .map(|states| states.for_each(drop)),
         ),
         Request::GetAll => {
             let reals = reals(instance);

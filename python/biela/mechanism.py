@@ -27,7 +27,8 @@ from .rates import differentiate
 from .results import ChangePoint, Drawing, End, Extreme, Mode, Modes, Range, Report, Result, Sweep
 
 Drive = Mapping[str, Any]
-"""Motions by the drivers' names: an expression in `t`, such as `"60*deg + 2*pi*t"`; positions; or
+"""Motions by the names of drivers, and of freedoms that are to be driven, and sizes of forces by
+their names, such as `motor.effort`: an expression in `t`, such as `"60*deg + 2*pi*t"`; positions; or
 a tuple of positions, velocities and accelerations. Numbers stand for constant arrays."""
 Parameters = Mapping[str, Union[float, str]]
 """Values by the parameters' names: numbers in SI units, or expressions such as `"120*mm"`."""
@@ -175,8 +176,8 @@ class Mechanism:
 
         Without `t` the times are those of the file, or there is no time if `drive` has arrays with
         rates or single poses are wanted. Each driver moves as `drive` says; the others follow the
-        prescribed motions of the file, or stay at their start values. Samples without rates are
-        differentiated. The mechanism starts in the assembly mode of its file and stays on the
+        prescribed motions of the file, or stay at their start values; freedoms move by the forces.
+        Samples without rates are differentiated. The mechanism starts in the assembly mode of its file and stays on the
         continuous motion.
 
         `variables` narrows the result to these variables, or to all of a body, marker, driver or

@@ -89,6 +89,13 @@ impl Follower {
     pub(crate) fn new(fit: &Arc<Fit>) -> Result<Self, Failure> {
         let targets = fit.targets.iter();
         let columns: Vec<Output> = targets.flat_map(|t| t.columns.iter().cloned()).collect();
+        let mut drivers = fit.scenario.driven.drivers.iter();
+        if let Some(freedom) = drivers.find(|driver| driver.is_free()) {
+            return Err(Failure::Usage(format!(
+                "drive: say how `{}` moves; a synthesis does not follow free motion",
+                freedom.name
+            )));
+        }
         let mut runner = Runner::new(&fit.scenario, &columns)?;
         runner.gives_up = true;
         Ok(Self {

@@ -8,7 +8,7 @@ use biela::drawing::{Diagram, Followed, ForcePlace, svg};
 use biela::kinematics::Output;
 use biela::kinematics::{End, Mode, Path, Pose, RangeSettings, Solver, SolverChoices};
 use biela::mechanism::{
-    Diagnostic, DriverId, DriverSource, Mechanism as Model, Parameter, ParameterId, Source, Unit,
+    Diagnostic, DriverId, Mechanism as Model, Parameter, ParameterId, Source, Unit,
 };
 use biela::page::{Place, edit};
 use numpy::{IntoPyArray, PyArray1};
@@ -209,12 +209,7 @@ impl Mechanism {
         let drivers = self.model.drivers.iter();
         drivers
             .map(|d| {
-                let start = match d.source {
-                    DriverSource::Input { start } => Some(start),
-                    // Left to the estimates if it is not a number.
-                    DriverSource::Free { start, .. } => Some(start).filter(|start| !start.is_nan()),
-                    DriverSource::Motion(_) => None,
-                };
+                let start = d.start();
                 let (name, description) = (d.name.clone(), d.description.clone());
                 let unit = d.coordinate.kind.unit().name;
                 (name, description, unit, start, d.min, d.max, d.wrapped)

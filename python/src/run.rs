@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use biela::drawing::ForcePlace;
 use biela::kinematics::{Direction, Output};
-use biela::mechanism::{Mechanism, ParameterId};
+use biela::mechanism::{Driver, Mechanism, ParameterId};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -70,6 +70,10 @@ pub(crate) fn run(
     by: &[ParameterId],
     told: Vec<Output>,
 ) -> Result<Run, Failure> {
+    if !by.is_empty() && scenario.driven.drivers.iter().any(Driver::is_free) {
+        let why = "gradient: free motion has none yet; drive the freedoms, or take differences";
+        return Err(Failure::Usage(why.to_owned()));
+    }
     let mut runner = Runner::new(scenario, columns)?;
     let rows = scenario.times.len();
     runner.start(parameters)?;

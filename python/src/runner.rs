@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use biela::dynamics::{self, FreeMotion, FreeState, Given};
 use biela::kinematics::{
     Blocked, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution, Solver,
     SolverChoices,
@@ -24,6 +25,10 @@ pub(crate) struct Runner {
     path: Path,
     choices: SolverChoices,
     near_singular: bool,
+    /// The drivers' values at the start, at which those without samples stay.
+    held: Vec<f64>,
+    /// The motion of freedoms and its state at the file's own values, if the mechanism has some.
+    free: Option<(FreeMotion, FreeState)>,
     /// Whether motions that stop do so without a reason, which is cheaper.
     pub(crate) gives_up: bool,
 }
@@ -37,7 +42,13 @@ impl Runner {
         if columns.iter().any(Output::is_force) {
             solution.seek_forces(&solver);
         }
+        let tolerance = solver.mechanism().simulation.tolerance;
+        let free = FreeMotion::new(&solver, tolerance).map_err(stopped)?;
         Ok(Self {
+            free: free.map(|free| {
+                let state = free.state();
+                (free, state)
+            }),
             home,
             solution,
             scenario: scenario.clone(),
@@ -45,6 +56,7 @@ impl Runner {
             choices: SolverChoices::default(),
             solver,
             near_singular: false,
+            held: Vec::new(),
             gives_up: false,
         })
     }
@@ -58,7 +70,23 @@ impl Runner {
     pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<(), Failure> {
         let time = self.scenario.times[0];
         self.begin(parameters)
-            .map_err(|error| Failure::Assembly(error.at_start(time)))
+            .map_err(|error| Failure::Assembly(error.at_start(time)))?;
+        self.release()
+    }
+
+    /// Lets freedoms move by the forces from the present pose on, with the velocities of the file.
+    fn release(&mut self) -> Result<(), Failure> {
+        if let Some((free, _)) = &mut self.free {
+            let (scenario, held) = (&self.scenario, &self.held);
+            let part = Part {
+                scenario,
+                held,
+                row: 1,
+            };
+            free.start(&mut self.solver, &part).map_err(stopped)?;
+            self.solve(0)?;
+        }
+        Ok(())
     }
 
     fn begin(&mut self, parameters: &[f64]) -> Result<(), Error> {
@@ -69,10 +97,15 @@ impl Runner {
         let path = (self.home).path_to_start(driven, parameters, self.scenario.times[0], value);
         self.home.start(home, &path)?;
         self.home.copy_choices(&mut self.choices);
+        if let Some((free, state)) = &mut self.free {
+            let selected = free.select(&mut self.solver, &mut self.solution, state);
+            debug_assert!(selected.is_ok(), "the file's own freedoms");
+        }
         self.solver.resume(self.home.pose(), &self.choices);
         self.path.from.copy_from_slice(parameters);
         self.path.to.copy_from_slice(parameters);
         self.near_singular = false;
+        self.held.clone_from(&self.solver.pose().drivers);
         self.solve(0)
     }
 
@@ -82,6 +115,9 @@ impl Runner {
     ///
     /// Cause of the mechanism's stop, and its place.
     pub(crate) fn advance(&mut self, row: usize) -> Result<(), String> {
+        if self.free.is_some() {
+            return self.advance_freely(row);
+        }
         self.advance_to(row).map_err(|blocked| {
             let mechanism = self.solver.mechanism();
             let pose = self.solver.pose();
@@ -94,6 +130,33 @@ impl Runner {
             let time = self.scenario.times[row];
             format!("at t = {} s: {error}", show_time(time))
         })
+    }
+
+    /// Moves a mechanism with freedoms on to a row's time.
+    fn advance_freely(&mut self, row: usize) -> Result<(), String> {
+        let Self {
+            free: Some((free, _)),
+            solver,
+            solution,
+            scenario,
+            held,
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        let part = Part {
+            scenario,
+            held,
+            row,
+        };
+        let parameters = solver.pose().parameters.clone();
+        let time = scenario.times[row];
+        free.jump(solver, &part, &parameters)
+            .and_then(|()| free.advance(solver, solution, &part, time))
+            .map_err(|stop| stop.to_string())?;
+        self.solve(row)
+            .map_err(|error| format!("at t = {} s: {error}", show_time(time)))
     }
 
     /// Moves on to a row's time, without rates.
@@ -249,10 +312,82 @@ impl Runner {
     ///
     /// They do not exist at a singular position.
     pub(crate) fn solve(&mut self, row: usize) -> Result<(), Error> {
+        if let Some((free, _)) = &self.free {
+            (self.solution.driver_rates).copy_from_slice(free.drivers());
+        }
+        for (place, sizes) in &self.scenario.loads {
+            if let Some(load) = self.solution.loads.get_mut(*place) {
+                *load = sizes[row];
+            }
+        }
         self.solution.follow_motions(&self.solver);
         for samples in &self.scenario.samples {
             self.solution.driver_rates[samples.driver.index()] = samples.at(row);
         }
         self.solution.solve(&mut self.solver)
     }
+}
+
+/// The inputs between two rows: drivers on cubics that have their values and velocities there, sizes of
+/// forces on straight lines.
+struct Part<'a> {
+    scenario: &'a Scenario,
+    held: &'a [f64],
+    /// The later row.
+    row: usize,
+}
+
+impl Part<'_> {
+    /// Returns the earlier and the later row, the time between them, and the place of a time on it.
+    fn rows(&self, time: f64) -> ([usize; 2], f64, f64) {
+        let times = &self.scenario.times;
+        let later = self.row.min(times.len() - 1);
+        let earlier = later.saturating_sub(1);
+        let h = times[later] - times[earlier];
+        let s = if h > 0.0 {
+            (time - times[earlier]) / h
+        } else {
+            1.0
+        };
+        ([earlier, later], h, s)
+    }
+}
+
+impl Given for Part<'_> {
+    fn driver(&self, driver: DriverId, time: f64) -> Jet {
+        let Some(samples) = self.scenario.samples.iter().find(|s| s.driver == driver) else {
+            return Jet::constant(self.held[driver.index()]);
+        };
+        let (rows, h, s) = self.rows(time);
+        let [from, to] = rows.map(|row| samples.at(row));
+        if h <= 0.0 {
+            return to;
+        }
+        let [before, after] = [from, to].map(|jet| h * jet.first());
+        let rise = to.value - from.value;
+        // Coefficients of s² and s³.
+        let [square, cube] = [
+            3.0 * rise - 2.0 * before - after,
+            before + after - 2.0 * rise,
+        ];
+        Jet::new(
+            from.value + s * (before + s * (square + s * cube)),
+            [
+                (before + s * (2.0 * square + 3.0 * s * cube)) / h,
+                (2.0 * square + 6.0 * s * cube) / (h * h),
+            ],
+        )
+    }
+
+    fn loads(&self, time: f64, loads: &mut [f64]) {
+        let ([earlier, later], _, s) = self.rows(time);
+        for (place, sizes) in &self.scenario.loads {
+            loads[*place] = sizes[earlier] + s * (sizes[later] - sizes[earlier]);
+        }
+    }
+}
+
+/// Returns the failure of a free motion.
+fn stopped(error: dynamics::Error) -> Failure {
+    Failure::Assembly(error.to_string())
 }

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use biela::cli::{check_parameter, parameter_value, unknown_name};
 use biela::kinematics::{Pose, SolverChoices};
-use biela::mechanism::{DriverId, DriverSource, Jet, Mechanism, Motion, ParameterId, Variable};
+use biela::mechanism::{
+    DriverId, DriverSource, Expression, Jet, Mechanism, Motion, ParameterId, Variable,
+};
 use pyo3::prelude::*;
 
 use crate::error::Failure;
@@ -57,6 +59,8 @@ pub(crate) struct Scenario {
     /// Times of the rows \[s\], ascending; at least one.
     pub(crate) times: Vec<f64>,
     pub(crate) samples: Vec<Samples>,
+    /// Sizes of inputs of forces at the times, by their places.
+    pub(crate) loads: Vec<(usize, Vec<f64>)>,
 }
 
 impl Scenario {
@@ -74,9 +78,29 @@ impl Scenario {
         check_times(&times)?;
         let mut driven = Mechanism::clone(own);
         let mut samples = Vec::new();
+        let mut loads: Vec<(String, Vec<f64>)> = Vec::new();
+        let inputs = own.force_inputs();
         for (name, drive) in drives {
+            if let Some(place) = inputs.iter().position(|input| input.name == name) {
+                let input = &inputs[place];
+                match drive {
+                    Drive::Text(text) => {
+                        let size = expression(own, &text)?;
+                        let load = &mut driven.forces[input.force].load;
+                        load.set_component(input.component, size);
+                    }
+                    Drive::Samples(orders) => {
+                        check_samples(&name, &orders, times.len())?;
+                        let [sizes, ..] = orders;
+                        loads.push((name, sizes));
+                    }
+                }
+                continue;
+            }
             let Some(driver) = own.driver_id(&name) else {
-                let names: Vec<&str> = own.drivers.iter().map(|d| d.name.as_str()).collect();
+                let names = own.drivers.iter().map(|d| d.name.as_str());
+                let names = names.chain(inputs.iter().map(|input| input.name.as_str()));
+                let names: Vec<&str> = names.collect();
                 return Err(Failure::Usage(format!(
                     "drive: {}",
                     unknown_name("driver", &name, &names)
@@ -84,11 +108,7 @@ impl Scenario {
             };
             driven.drivers[driver.index()].source = match drive {
                 Drive::Text(text) => {
-                    let motion = own.parse_expression(&text, Some(Variable::Time));
-                    let motion = motion.map_err(|error| {
-                        Failure::Usage(format!("drive: {}\n  {text}", error.message))
-                    })?;
-                    DriverSource::Motion(Motion::Expression(motion))
+                    DriverSource::Motion(Motion::Expression(expression(own, &text)?))
                 }
                 Drive::Samples(orders) => {
                     check_samples(&name, &orders, times.len())?;
@@ -100,12 +120,29 @@ impl Scenario {
         }
         Ok(Self {
             own: Arc::clone(own),
-            driven: Arc::new(driven),
             home: Arc::clone(home),
             times,
             samples,
+            loads: places(&driven, loads),
+            driven: Arc::new(driven),
         })
     }
+}
+
+/// Returns the sizes of inputs of forces by their places among those of the driven mechanism.
+fn places(driven: &Mechanism, loads: Vec<(String, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
+    let inputs = driven.force_inputs();
+    let placed = loads.into_iter().filter_map(|(name, sizes)| {
+        let place = inputs.iter().position(|input| input.name == name)?;
+        Some((place, sizes))
+    });
+    placed.collect()
+}
+
+/// Returns an expression in t and the parameters.
+fn expression(own: &Mechanism, text: &str) -> Result<Expression, Failure> {
+    let parsed = own.parse_expression(text, Some(Variable::Time));
+    parsed.map_err(|error| Failure::Usage(format!("drive: {}\n  {text}", error.message)))
 }
 
 /// Returns all parameters in force for values of some \[SI\].

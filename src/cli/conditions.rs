@@ -12,8 +12,8 @@ use super::signals::Signals;
 use crate::fmi;
 use crate::kinematics::{self, Solver};
 use crate::mechanism::{
-    DriverId, DriverSource, Expression, ExpressionError, ForceLaw, Jet, Load, Mechanism, Motion,
-    Parameter, ParameterId, Unit, Variable, help, large_angle, not_finite, quoted, shown,
+    DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Parameter, ParameterId, Unit,
+    Variable, help, large_angle, not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
@@ -66,7 +66,9 @@ impl Conditions {
             if let Some(input) = index.checked_sub(drivers).map(|k| &force_inputs[k]) {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
-                set_force(&mut driven.forces[input.force].load, input.component, size);
+                driven.forces[input.force]
+                    .load
+                    .set_component(input.component, size);
                 forces_by_option.push(input.name.as_str());
                 continue;
             }
@@ -166,24 +168,6 @@ pub(super) fn warn_of_degrees(option: &str, text: &str, value: f64) {
         let number = shown(value);
         let warning = format!("{option}: {message}; degrees are written `{number}*deg`");
         Message::Warning(warning).show();
-    }
-}
-
-/// Gives a component of a force a size; those without one are zero.
-fn set_force(load: &mut Load, component: usize, size: Expression) {
-    match load {
-        Load::Coordinate { law, .. } => {
-            *law = Some(ForceLaw {
-                value: Some(size),
-                spring: None,
-                damping: None,
-            });
-        }
-        Load::Marker { law, .. } => {
-            let zero = || Expression::constant(0.0);
-            let law = law.get_or_insert_with(|| [zero(), zero(), zero()]);
-            law[component] = size;
-        }
     }
 }
 

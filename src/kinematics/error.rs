@@ -30,12 +30,11 @@ pub enum Error {
     },
     /// Constraints that cannot be satisfied together, whatever the mechanism's pose.
     #[error(
-        "{} contradict each other: all others closed, {open}; remove one of them, or make them \
-         agree{}",
-        .origins.join(", "), .fit.as_ref().map(|fit| format!(": {fit}")).unwrap_or_default()
+        "{}{}", contradiction_message(.origins, .open),
+        .fit.as_ref().map(|fit| format!(": {fit}")).unwrap_or_default()
     )]
     Contradiction {
-        /// The smallest set: kind and name of each.
+        /// The smallest set: kind and name of each; one alone if all others hold without it.
         origins: Vec<String>,
         /// The gap in the one declared last when the others are closed.
         open: OpenJoint,
@@ -278,6 +277,22 @@ impl fmt::Display for Proof {
                 write!(f, "bounds exclude all angles of {}", bodies.join(", "))
             }
         }
+    }
+}
+
+/// Describes elements that contradict each other, or one that contradicts all others.
+fn contradiction_message(origins: &[String], open: &OpenJoint) -> String {
+    match origins {
+        [alone] => format!(
+            "{alone} contradicts all others: with these closed, it stays open by {}; move one of \
+             its markers by as much, or remove it",
+            open.measured()
+        ),
+        _ => format!(
+            "{} contradict each other: all others closed, {open}; remove one of them, or make \
+             them agree",
+            origins.join(", ")
+        ),
     }
 }
 

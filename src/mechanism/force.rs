@@ -170,6 +170,25 @@ impl Load {
     /// Last parts of the names of a marker's force and torque.
     pub const COMPONENTS: [&str; 3] = ["fx", "fy", "torque"];
 
+    /// Gives a component of an input a size, an expression in t and the parameters; those without
+    /// one are zero. The force is no input any more.
+    pub fn set_component(&mut self, component: usize, size: Expression) {
+        match self {
+            Self::Coordinate { law, .. } => {
+                *law = Some(ForceLaw {
+                    value: Some(size),
+                    spring: None,
+                    damping: None,
+                });
+            }
+            Self::Marker { law, .. } => {
+                let zero = || Expression::constant(0.0);
+                let law = law.get_or_insert_with(|| [zero(), zero(), zero()]);
+                law[component] = size;
+            }
+        }
+    }
+
     /// Returns whether its size is an FMI input.
     #[must_use]
     pub fn is_input(&self) -> bool {

@@ -415,9 +415,14 @@ impl Jump {
     }
 }
 
-/// Returns whether a motion was given up for its number of sub-steps.
+/// Returns whether a motion was given up for its number of sub-steps, perhaps in front of a dead
+/// point that is still ahead.
 fn is_given_up(blocked: &Blocked) -> bool {
-    matches!(blocked.reason, Reason::TooLong | Reason::NearSingular)
+    match &blocked.reason {
+        Reason::TooLong | Reason::NearSingular => true,
+        Reason::Singular(point) => point.s - blocked.s > SAME_STOP,
+        _ => false,
+    }
 }
 
 /// Moves along the first `part` of the jump in a number of steps, and back if it is one.

@@ -181,7 +181,7 @@ impl<'a> Text<'a> {
         let shape = shape.replace('P', &name);
         let derived = format!("{}d{}", self.view.prefix, self.parameters.len());
         let _ = writeln!(self.head, "{derived} = '{shape}'");
-        format!("'{value:?} + ({by:?})*{derived}'")
+        format!("'({value:?} + ({by:?})*{derived})'")
     }
 
     /// Returns a length as a number.

@@ -27,9 +27,12 @@ use crate::mechanism::{
 /// Largest deviation of a number or a prescribed motion that is not known to be continuous, in
 /// radians and characteristic lengths; a motion that jumps by more is refused where it jumps.
 pub(in crate::kinematics) const LARGEST_JUMP: f64 = 0.1;
+/// A path is blocked where a sub-step of this part of it, or of less than twice as much, is
+/// rejected.
+pub(in crate::kinematics) const SMALLEST_SUBSTEP: f64 = 1e-12;
 /// Part of a path in which a number that is not known to be continuous counts as lying between its
-/// values at both ends: the smallest sub-steps are less than twice 1e-12.
-const NARROW: f64 = 2e-12;
+/// values at both ends.
+const NARROW: f64 = 2.0 * SMALLEST_SUBSTEP;
 
 /// Bounds of the numbers in the equations over a sub-step.
 #[derive(Debug, Default)]

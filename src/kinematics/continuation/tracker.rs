@@ -499,7 +499,11 @@ impl Run<'_> {
             Failure::NotCertified => self.ratio_to_rejected(),
         };
         self.is_halved |= ratio.is_none();
-        self.length = (end - self.s) * ratio.unwrap_or(HALF);
+        let tried = end - self.s;
+        self.length = tried * ratio.unwrap_or(HALF);
+        if tried >= 2.0 * smallest {
+            self.length = self.length.max(smallest);
+        }
         if self.length >= smallest {
             return Ok(());
         }

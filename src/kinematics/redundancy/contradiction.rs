@@ -9,6 +9,7 @@ use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::assembly::nearest::{AN_EQUATION, search_at_once};
 use crate::kinematics::assembly::part::STARTS;
+use crate::kinematics::constraint::TurnEffect;
 use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
@@ -40,6 +41,7 @@ pub(super) fn explain_open(
         state.at.copy_pose(&mut nearest);
         let gap = close_near(&compiled.system, state, &all, estimate)?;
         let slip = explain_slip(compiled, state, gap);
+        let slip = slip.or_else(|| explain_phase(compiled, state, estimate));
         state.at.set_pose(compiled.system.mechanism(), &nearest);
         slip
     });
@@ -103,6 +105,28 @@ pub(super) fn explain_open(
             _ => not_found(compiled, state, gathered.into_iter().collect()),
         },
     }
+}
+
+/// Returns the error for the one gear, belt or rack without which all else closes, and which then
+/// has no say: its phase is wrong.
+fn explain_phase(
+    compiled: &CompiledMechanism,
+    state: &mut State,
+    estimate: &[f64],
+) -> Option<Error> {
+    let system = &compiled.system;
+    let equations = system.equations();
+    let rows = (0..equations.len())
+        .filter(|&row| equations[row].constraint.turn_effect() == TurnEffect::Proportional);
+    let mut wrong = rows.filter_map(|row| {
+        let others: Vec<_> = (0..equations.len()).filter(|k| *k != row).collect();
+        let decided = close_on(system, state, &others, estimate).is_none()
+            && depend_on(compiled, state, &[row], &others);
+        let (origin, open) = open_joints(compiled, state, &[row], 0.0).pop()?;
+        decided.then(|| contradiction(compiled, state, &[origin], origin, open))
+    });
+    let first = wrong.next()?;
+    wrong.next().is_none().then_some(first)
 }
 
 /// Returns the error for a mechanism without a proof, at the nearest pose found.

@@ -105,7 +105,8 @@ fn derivatives_and_nominals_of_no_states_are_read_in_initialization_mode() {
     assert!(refused, "not before initialization");
     instance.setup_experiment(0.0, None).expect("legal");
     instance.enter_initialization_mode().expect("legal");
-    assert_eq!(instance.derivatives_of_states(0).map(Iterator::count), Ok(0));
+    let derivatives = instance.derivatives_of_states(0).map(Iterator::count);
+    assert_eq!(derivatives, Ok(0));
     assert_eq!(instance.nominals(0).map(Iterator::count), Ok(0));
 }
 

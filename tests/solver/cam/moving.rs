@@ -152,6 +152,34 @@ fn one_step_ends_where_many_do() {
     assert!(refused < 30, "{refused}");
 }
 
+/// Contours that are circles at both ends of the step and have a corner in between: one step stops
+/// where many do, as the roller comes to the corner.
+#[test]
+fn one_step_stops_at_a_corner_between_its_ends() {
+    for (shape, a) in [
+        ("abs", 0.001),
+        ("abs", 0.01),
+        ("-abs", 0.001),
+        ("-abs", 0.01),
+    ] {
+        let profile = format!("'r0 + a*c*(1 - c)*{shape}(sin(theta - 1))'");
+        let text = arm("'roller', radius = 0.01", &profile, [0.05, a, 0.0]);
+        for u in [-2.0, 4.0] {
+            let follow = |steps: u32| {
+                let (mut solver, _) = assembled(&parse(&text));
+                go_to(&mut solver, &[0.05, a, 1.0], u, steps).0
+            };
+            let (whole, truth) = (follow(1), follow(12));
+            assert!(truth < 0.9, "{shape}, {a}, to {u}: {truth}");
+            // The stop is where the box of the proof touches the corner.
+            assert!(
+                (whole - truth).abs() < 1e-9,
+                "{shape}, {a}: {whole} {truth}"
+            );
+        }
+    }
+}
+
 /// The table of a prescribed motion moves while it runs: the value is that of the table at the end.
 #[test]
 fn tables_of_motions_are_proved() {

@@ -135,6 +135,18 @@ fn each_mechanism_has_its_verdict() {
             ),
         ),
         (
+            "a belt with a wrong phase",
+            with_joints(
+                &parallelogram(&[], 60.0, true)
+                    .replace("O = [0, 0], B", "O = [0, 0, \"30*deg\"], B"),
+                "k = { type = \"belt\", markers = [\"crank.O\", \"rocker.O\"], radii = [1, 1] }",
+            ),
+            Says(
+                "joint `k` contradicts all others: with these closed, it stays open by 30.00 deg; \
+                 move one of its markers by as much, or remove it",
+            ),
+        ),
+        (
             "two guides at an angle",
             slider_crank(
                 "",

@@ -160,17 +160,39 @@ fn an_output_may_jump() {
     assert_eq!(progress.substeps, 1);
 }
 
+/// A platform on three legs, one of which has a length that is a function of `n`.
+fn platform(length: &str) -> String {
+    "format = 1\nname = 'platform'\n[parameters]\nn = { value = 0.2, tunable = true }\n\
+        [ground.markers]\nA0 = [-1, 1]\nA1 = ['0.01 - 0.1*abs(n - 1)', 1.9]\nA2 = [1.9, -0.6]\n\
+        [bodies.p]\nmarkers = { B0 = [0, -1.4], B1 = ['-2 + 0.1*max(n, 1)', '-0.1*hypot(n - 1, 0)'], \
+        B2 = [-0.2, 1.8] }\nestimate = [0.44, 0.15, -1.3]\n[constraints]\n\
+        l1 = { coordinate = 'distance', markers = ['ground.A1', 'p.B1'], value = 'LENGTH' }\n\
+        l2 = { coordinate = 'distance', markers = ['ground.A2', 'p.B2'], value = 1.44 }\n[drivers]\n\
+        u0 = { coordinate = 'distance', markers = ['ground.A0', 'p.B0'], start = 1.26 }\n"
+        .replace("LENGTH", length)
+}
+
+/// Parts that jump together are passed wherever they do, though rejected sub-steps are shortened by
+/// large ratios.
+#[test]
+fn parts_that_jump_together_are_passed_anywhere() {
+    for place in 1..100 {
+        let corner = 0.2 + 0.015 * f64::from(place);
+        let length = format!("0.4 + 0.1*abs(mod(n + {:?}, 1) - 0.5)", 2.0 - corner);
+        let (mut solver, _) = assembled(&parse(&platform(&length)));
+        let start = solver.pose().q.clone();
+        for target in [[1.7, 1.2], [0.2, 1.26]] {
+            let tracked = go_to(&mut solver, target, 1);
+            tracked.unwrap_or_else(|reason| panic!("{length}, to {target:?}: {reason:?}"));
+        }
+        assert!(difference(&solver.pose().q, &start) < 1e-12, "{length}");
+    }
+}
+
 /// Legs of a platform, wheels and a body held at an angle change with corners. The truth is the
 /// same path in tiny parts.
 #[test]
 fn corners_in_other_blocks_are_passed() {
-    let platform = "format = 1\nname = 'platform'\n[parameters]\nn = { value = 0.2, tunable = true }\n\
-        [ground.markers]\nA0 = [-1, 1]\nA1 = ['0.01 - 0.1*abs(n - 1)', 1.9]\nA2 = [1.9, -0.6]\n\
-        [bodies.p]\nmarkers = { B0 = [0, -1.4], B1 = ['-2 + 0.1*max(n, 1)', '-0.1*hypot(n - 1, 0)'], \
-        B2 = [-0.2, 1.8] }\nestimate = [0.44, 0.15, -1.3]\n[constraints]\n\
-        l1 = { coordinate = 'distance', markers = ['ground.A1', 'p.B1'], value = '0.3 + 0.1*min(n, 1)' }\n\
-        l2 = { coordinate = 'distance', markers = ['ground.A2', 'p.B2'], value = 1.44 }\n[drivers]\n\
-        u0 = { coordinate = 'distance', markers = ['ground.A0', 'p.B0'], start = 1.26 }\n";
     let wheels = "format = 1\nname = 'wheels'\n[parameters]\nn = { value = 0.2, tunable = true }\n\
         [ground.markers]\nO = [0, 0]\nP = [0.3, 0]\n[bodies.a]\nmarkers = { O = [0, 0] }\n[bodies.b]\n\
         markers = { P = [0, 0] }\nestimate = [0.3, 0, 0]\n[bodies.c]\n\
@@ -180,7 +202,8 @@ fn corners_in_other_blocks_are_passed() {
         Q = { type = 'weld', markers = ['b.P', 'c.Q'] }\n\
         k = { type = 'belt', markers = ['a.O', 'b.P'], radii = ['0.1 + 0.02*abs(n - 1)', 0.1] }\n\
         [drivers]\nu = { coordinate = 'angle', markers = ['ground.O', 'a.O'], start = 1 }\n";
-    for (text, to) in [(platform, 1.2), (wheels, 4.0)] {
+    let platform = platform("0.3 + 0.1*min(n, 1)");
+    for (text, to) in [(platform.as_str(), 1.2), (wheels, 4.0)] {
         let mechanism = parse(text);
         let follow = |steps: u32| {
             let (mut solver, _) = assembled(&mechanism);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Run;
+use crate::kinematics::certificate::SMALLEST_SUBSTEP;
 use crate::kinematics::singular::CROSSING_END;
 use crate::mechanism::DriverId;
 
@@ -15,10 +16,8 @@ pub(super) const HALF: f64 = 0.5;
 const LARGEST_RATIO: f64 = 4.0;
 /// Safety factor on the length that the certificate of another sub-step suggests.
 const ROOM: f64 = 0.85;
-/// A path is blocked where a sub-step of this part of it is rejected.
-const SMALLEST_SUBSTEP: f64 = 1e-12;
-/// The same for the first sub-step, which may lead away from a dead point, from as near as the
-/// motion came to it. The motion slows down there as it has come on.
+/// [`SMALLEST_SUBSTEP`] of the first sub-step, which may lead away from a dead point, from as near as
+/// the motion came to it. The motion slows down there as it has come on.
 const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
 /// The same where the search is given up early: a pose that needs shorter ones is next to a singular
 /// position.
