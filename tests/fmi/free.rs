@@ -2,7 +2,9 @@
 //! co-simulation.
 
 use biela::dynamics::integrator::{ErrorControl, Failure, Integrator, Method, System};
-use biela::fmi::{Causality, Error, Interface, MechanismModel, StepProgress, Version, value_reference};
+use biela::fmi::{
+    Causality, Error, Interface, MechanismModel, StepProgress, Version, value_reference,
+};
 use biela::mechanism::Mechanism;
 use std::sync::Arc;
 
@@ -67,8 +69,8 @@ fn go_on(instance: &mut Instance, name: &str, input: Option<&str>, from: u32) ->
         .filter(|place| instance.variables()[*place].kind.is_real())
         .map(value_reference)
         .collect();
-    let steps = (from..from + 10).map(|step| {
-        let t = h * f64::from(step);
+    let steps = (from..from + 10).map(|index| {
+        let t = h * f64::from(index);
         if let Some(input) = input {
             set(instance, [(input, 0.3 * (7.0 * t).cos())]);
         }
@@ -169,10 +171,7 @@ fn derivatives_in_model_exchange_are_those_of_differences() {
                 assert_eq!(instance.number_of_states(), Ok(count), "{name}");
             }
             // Away from rest, where much would vanish.
-            let start: Vec<f64> = instance
-                .continuous_states(count)
-                .expect("known")
-                .collect();
+            let start: Vec<f64> = instance.continuous_states(count).expect("known").collect();
             let moved: Vec<f64> = start
                 .iter()
                 .zip(1..)
@@ -184,21 +183,54 @@ fn derivatives_in_model_exchange_are_those_of_differences() {
                 set(&mut instance, [(input, 0.7)]);
             }
             let (states, unknowns) = states_and_unknowns(&instance);
-            let knowns: Vec<u32> = states
-                .iter()
-                .copied()
-                .chain(input.map(|input| vr(&instance, input)))
-                .collect();
             assert_eq!(states.len(), count, "{name}");
-            for known in knowns {
-                let exact = instance
-                    .directional_derivative(&unknowns, &[known], &[1.0])
-                    .unwrap_or_else(|error| panic!("{name}: {error}"));
+            for (place, &known) in states.iter().enumerate() {
+                let exact = derivative(&mut instance, &unknowns, known);
+                let found = differences_by_state(&mut instance, &unknowns, &moved, place);
+                compare(&instance, name, &unknowns, known, &exact, &found);
+            }
+            if let Some(input) = input {
+                let known = vr(&instance, input);
+                let exact = derivative(&mut instance, &unknowns, known);
                 let found = differences(&mut instance, &unknowns, known);
                 compare(&instance, name, &unknowns, known, &exact, &found);
             }
         }
     }
+}
+
+#[track_caller]
+fn derivative(instance: &mut Instance, unknowns: &[u32], known: u32) -> Vec<f64> {
+    let along = instance.directional_derivative(unknowns, &[known], &[1.0]);
+    along.unwrap_or_else(|error| panic!("{known}: {error}"))
+}
+
+/// Returns the derivatives of the unknowns by one state, by differences of fourth order.
+fn differences_by_state(
+    instance: &mut Instance,
+    unknowns: &[u32],
+    states: &[f64],
+    place: usize,
+) -> Vec<f64> {
+    // As in `differences`.
+    let step = 1e-5;
+    let mut moved = |steps: f64| -> Vec<f64> {
+        let mut states = states.to_vec();
+        states[place] += steps * step;
+        instance.set_continuous_states(&states).expect("legal");
+        instance.reals(unknowns).expect("it closes").collect()
+    };
+    let [far_before, before, after, far_after] = [-2.0, -1.0, 1.0, 2.0].map(&mut moved);
+    moved(0.0);
+    let way = (states[place] + step) - (states[place] - step);
+    let difference = |unknown: usize| {
+        let (near, far) = (
+            after[unknown] - before[unknown],
+            far_after[unknown] - far_before[unknown],
+        );
+        (8.0 * near - far) / (6.0 * way)
+    };
+    (0..unknowns.len()).map(difference).collect()
 }
 
 #[track_caller]
@@ -249,9 +281,7 @@ fn derivatives_in_initialization_are_those_of_differences() {
             .chain(parameters)
             .collect();
         for known in knowns {
-            let exact = instance
-                .directional_derivative(&unknowns, &[known], &[1.0])
-                .unwrap_or_else(|error| panic!("{name}: {error}"));
+            let exact = derivative(&mut instance, &unknowns, known);
             let found = differences(&mut instance, &unknowns, known);
             compare(&instance, name, &unknowns, known, &exact, &found);
         }
@@ -312,7 +342,9 @@ fn model_exchange_goes_where_co_simulation_goes() {
         }
         // States are in the order of the variables.
         let (states, _) = states_and_unknowns(&hosted);
-        let names = states.iter().map(|s| &hosted.variables()[*s as usize - 1].name);
+        let names = states
+            .iter()
+            .map(|s| &hosted.variables()[*s as usize - 1].name);
         for ((x, name_of), _) in found.iter().zip(names).zip(&expected) {
             let [exact] = get(&mut itself, [name_of]);
             let off = (x - exact).abs() / (1.0 + exact.abs());
@@ -338,7 +370,9 @@ fn a_force_that_jumps_acts_from_its_step_on() {
         let [acceleration, velocity] = get(&mut instance, ["x.acceleration", "x.velocity"]);
         assert!((acceleration - 0.5 * force).abs() < 1e-14);
         assert!((velocity - v).abs() < 1e-13);
-        instance.do_step(0.5 * f64::from(step), 0.5).expect("it moves");
+        instance
+            .do_step(0.5 * f64::from(step), 0.5)
+            .expect("it moves");
         x += 0.5 * v + 0.0625 * force;
         v += 0.25 * force;
         let found = get(&mut instance, ["x.position", "x.velocity"]);

@@ -127,10 +127,7 @@ fn a_block_on_a_train_of_wheels_falls_evenly() {
     let pinion: f64 = 1.0 / 0.1;
     let wheel = pinion * 0.1 / 0.25;
     let pulley = wheel * 0.2 / 0.05;
-    let effective = 1.5
-        + 0.004 * pinion.powi(2)
-        + 0.05 * wheel.powi(2)
-        + 0.0006 * pulley.powi(2);
+    let effective = 1.5 + 0.004 * pinion.powi(2) + 0.05 * wheel.powi(2) + 0.0006 * pulley.powi(2);
     let acceleration = -1.5 * 9.81 / effective;
     let times = times(3.0, 12);
     assert_follows(

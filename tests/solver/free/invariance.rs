@@ -101,7 +101,10 @@ fn order_and_names_do_not_matter() {
         let bodies: String = bodies.iter().flat_map(|b| ["\n[bodies.", b]).collect();
         let reversed = format!("{}{bodies}{}", &text[..begin], &text[joints..]);
         let [one, other] = names;
-        let renamed = text.replace(one, "zz").replace(other, one).replace("zz", other);
+        let renamed = text
+            .replace(one, "zz")
+            .replace(other, one)
+            .replace("zz", other);
         for changed in [reversed, renamed] {
             let off = error(&end(&parse(&changed), fed, until), &expected);
             println!("| {name} in another order | {off:.1e} / 1e-8 |");
@@ -123,7 +126,9 @@ fn a_motion_without_losses_returns() {
         run.to(until);
         let velocities: Vec<f64> = run.free.velocities().collect();
         let freedoms = run.free.freedoms().to_vec();
-        let Run { solver, free, fed, .. } = &mut run;
+        let Run {
+            solver, free, fed, ..
+        } = &mut run;
         let back = |freedom| {
             let place = freedoms.iter().position(|f| *f == freedom);
             -velocities[place.expect("a freedom")]
@@ -143,7 +148,12 @@ fn three_cranks(arm: &str, joint: &str, rest: &str) -> String {
                  center = [0.1, 0]";
     let (x, y) = (0.2 * f64::cos(-0.6), 0.2 * f64::sin(-0.6));
     let bodies: String = (0..3)
-        .map(|k| format!("[bodies.crank{k}]\nestimate = [{}, 0, -0.6]\n{crank}\n", 0.5 * f64::from(k)))
+        .map(|k| {
+            format!(
+                "[bodies.crank{k}]\nestimate = [{}, 0, -0.6]\n{crank}\n",
+                0.5 * f64::from(k)
+            )
+        })
         .collect();
     let joints: String = (0..3)
         .map(|k| {
@@ -186,7 +196,12 @@ fn a_mechanism_with_redundant_joints_swings() {
 fn driven_beam(z: &[Taylor], t: Taylor) -> Vec<Mass> {
     let crank = 0.3 * (5.0 * t).sin() - 0.6;
     let [x, y] = from(zero(), 0.2, crank);
-    vec![body(0.3, rod(0.3, 0.4), [x + 0.3, y, z[0] - FRAC_PI_2], [0.2, 0.0])]
+    vec![body(
+        0.3,
+        rod(0.3, 0.4),
+        [x + 0.3, y, z[0] - FRAC_PI_2],
+        [0.2, 0.0],
+    )]
 }
 
 /// A rod hangs from the beam of a driven parallelogram with a redundant crank.
@@ -205,7 +220,13 @@ fn a_rod_swings_under_a_driven_mechanism_with_redundant_joints() {
         loads: unloaded,
     };
     let mechanism = parse(&three_cranks(arm, joint, rest));
-    assert_lagrange("rod under redundant cranks", &mechanism, Fed::default(), &truth, &times(4.0, 20));
+    assert_lagrange(
+        "rod under redundant cranks",
+        &mechanism,
+        Fed::default(),
+        &truth,
+        &times(4.0, 20),
+    );
 }
 
 fn massless_coupler(z: &[Taylor], _: Taylor) -> Vec<Mass> {
@@ -222,9 +243,15 @@ fn massless_bodies_pass_the_motion_on() {
         .lines()
         .filter(|line| {
             let line = line.trim();
-            !["mass = 2", "mass = 0.5", "inertia = 0.008", "inertia = 0.003", "center = [0.12"]
-                .iter()
-                .any(|start| line.starts_with(start))
+            ![
+                "mass = 2",
+                "mass = 0.5",
+                "inertia = 0.008",
+                "inertia = 0.003",
+                "center = [0.12",
+            ]
+            .iter()
+            .any(|start| line.starts_with(start))
                 && !line.starts_with("motor =")
                 && !line.starts_with("pivot =")
         })
@@ -240,5 +267,11 @@ fn massless_bodies_pass_the_motion_on() {
     };
     // At the extreme positions of the rocker the crank has no inertia; the motion ends before.
     let mechanism = parse(&massless.join("\n"));
-    assert_lagrange("massless coupler", &mechanism, Fed::default(), &truth, &times(0.1, 5));
+    assert_lagrange(
+        "massless coupler",
+        &mechanism,
+        Fed::default(),
+        &truth,
+        &times(0.1, 5),
+    );
 }

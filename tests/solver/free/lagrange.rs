@@ -209,12 +209,7 @@ fn cart_pole(z: &[Taylor], _: Taylor) -> Vec<Mass> {
     let [o, _] = zero();
     vec![
         body(1.0, 0.0, [z[0], o, o], [0.0, 0.0]),
-        body(
-            0.2,
-            rod(0.2, 0.6),
-            [z[0], o, z[1] + FRAC_PI_2],
-            [0.3, 0.0],
-        ),
+        body(0.2, rod(0.2, 0.6), [z[0], o, z[1] + FRAC_PI_2], [0.3, 0.0]),
     ]
 }
 

@@ -101,7 +101,10 @@ fn squares(count: usize) -> String {
     for k in 0..=count {
         // A text takes all that is written to it.
         let _ = writeln!(pivots, "O{k} = [{k}, 0]");
-        let _ = writeln!(bodies, "[bodies.post{k}]\nestimate = [{k}, 0, \"90*deg\"]\n{bar}");
+        let _ = writeln!(
+            bodies,
+            "[bodies.post{k}]\nestimate = [{k}, 0, \"90*deg\"]\n{bar}"
+        );
         let _ = writeln!(
             joints,
             "O{k} = {{ type = \"revolute\", markers = [\"ground.O{k}\", \"post{k}.A\"] }}"
@@ -109,7 +112,10 @@ fn squares(count: usize) -> String {
     }
     for k in 1..=count {
         let before = k - 1;
-        let _ = writeln!(bodies, "[bodies.beam{k}]\nestimate = [{before}, 1, 0]\n{bar}");
+        let _ = writeln!(
+            bodies,
+            "[bodies.beam{k}]\nestimate = [{before}, 1, 0]\n{bar}"
+        );
         let _ = writeln!(
             joints,
             "A{k} = {{ type = \"revolute\", markers = [\"post{before}.B\", \"beam{k}.A\"] }}\n\

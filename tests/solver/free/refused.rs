@@ -55,7 +55,7 @@ fn a_singular_mass_matrix_is_refused() {
 fn a_mass_flies_until_its_rods_are_stretched() {
     let elbow: f64 = 2.0;
     let mechanism = parse(&two_rods("", "mass = 1\ncenter = [1, 0]", elbow));
-    let mut run = Run::new(&mechanism, 1e-8, Fed::default());
+    let mut run = Run::new(&mechanism, 1e-6, Fed::default());
     // From rest at x = sin 2, y = −1 − cos 2: the distance from the pivot is 2 at this time.
     let (x, y) = (elbow.sin(), -1.0 - elbow.cos());
     let depth = (4.0 - x * x).sqrt();
@@ -71,8 +71,8 @@ fn a_mass_flies_until_its_rods_are_stretched() {
                 ];
                 let fallen = y - 0.5 * 9.81 * time * time;
                 // The host's tolerance times the growth of errors near the stretched position.
-                assert!((found[0] - x).abs() < 1e-6, "at {time}: {found:?}");
-                assert!((found[1] - fallen).abs() < 1e-6, "at {time}: {found:?}");
+                assert!((found[0] - x).abs() < 1e-5, "at {time}: {found:?}");
+                assert!((found[1] - fallen).abs() < 1e-5, "at {time}: {found:?}");
             }
             Err(error) => {
                 let at = run.solver.pose().time;
@@ -81,7 +81,10 @@ fn a_mass_flies_until_its_rods_are_stretched() {
                     stretched - at,
                     run.statistics()
                 );
-                assert!(at <= stretched + 1e-9, "stopped at {at}, stretched at {stretched}");
+                assert!(
+                    at <= stretched + 1e-9,
+                    "stopped at {at}, stretched at {stretched}"
+                );
                 assert!(stretched - at < 1e-2, "stopped early, at {at}");
                 return;
             }

@@ -36,9 +36,11 @@ fn a_motion_goes_on_from_its_state_in_another_solver() {
                 free,
                 ..
             } = &mut other;
-            free.select(solver, solution, &state).expect("its coordinates");
+            free.select(solver, solution, &state)
+                .expect("its coordinates");
             assert!(solver.resume(run.solver.pose(), &choices));
-            free.resume(solver, &state).expect("a state of the same mechanism");
+            free.resume(solver, &state)
+                .expect("a state of the same mechanism");
             // And the first one goes on as if nobody had looked.
             let mut straight = Run::new(&mechanism, 1e-8, fed);
             for earlier in [0.0, 0.37, 0.3701, 0.8] {
