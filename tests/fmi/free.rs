@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::clauses::{get, initialized, set, started, vr};
 use crate::common::log::Heard;
-use crate::common::{Instance, instance_of, shipped};
+use crate::common::{Instance, folder, instance_of, parse, shipped};
 use crate::differences::{DIFFERENCE, differences};
 
 /// Mechanisms with a force input, if they have one, and with their freedoms.
@@ -24,8 +24,28 @@ const FREE: [(&str, Option<&str>, &[&str]); 7] = [
     ("andrews_free", None, &["beta"]),
 ];
 
+/// The four-bar with its rocker's angle as the freedom, which meets its dead points.
+const ROCKER: (&str, Option<&str>, &[&str]) = ("rocker", Some("motor.effort"), &["swing"]);
+
+/// A shipped mechanism, or the one above.
+fn mechanism(name: &str) -> Arc<Mechanism> {
+    if name != ROCKER.0 {
+        return shipped(name);
+    }
+    let path = folder("mechanisms").join("four_bar_free.toml");
+    let text = std::fs::read_to_string(path).expect("it is shipped");
+    let begin = text.find("crank_angle = ").expect("its freedom");
+    let end = begin + text[begin..].find('\n').expect("a line");
+    parse(&format!(
+        "{}swing = {{ coordinate = \"angle\", markers = [\"ground.O4\", \"rocker.O\"], \
+         start = \"122.82478*deg\", velocity = 4.0 }}{}",
+        &text[..begin],
+        &text[end..]
+    ))
+}
+
 fn instance(name: &str, interface: Interface, version: Version) -> Instance {
-    let mechanism = shipped(name);
+    let mechanism = mechanism(name);
     let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
     Instance::of_version(version, model, Box::new(Heard::default()), false)
 }
@@ -86,7 +106,7 @@ fn go_on(instance: &mut Instance, name: &str, input: Option<&str>, from: u32) ->
 #[test]
 fn a_state_in_the_middle_goes_on_to_the_same_bits() {
     for version in [Version::Fmi2, Version::Fmi3] {
-        for (name, input, _) in FREE {
+        for (name, input, _) in FREE.into_iter().chain([ROCKER]) {
             let mut straight = running(name, version);
             let mut first = running(name, version);
             go_on(&mut straight, name, input, 0);
@@ -113,7 +133,7 @@ fn a_state_in_the_middle_goes_on_to_the_same_bits() {
 /// The size of a host's step and what it reads between does not matter to the marks.
 #[test]
 fn small_steps_end_where_large_ones_do() {
-    for (name, _, freedoms) in FREE {
+    for (name, _, freedoms) in FREE.into_iter().chain([ROCKER]) {
         let h = 10.0 * step_size(name);
         let mut large = running(name, Version::Fmi2);
         let mut small = running(name, Version::Fmi2);
@@ -361,7 +381,7 @@ fn a_force_that_jumps_acts_from_its_step_on() {
         [joints]\nguide = { type = \"translational\", markers = [\"ground.O\", \"block.B\"] }\n\
         [freedoms]\nx = { coordinate = \"x\", markers = [\"ground.O\", \"block.B\"] }\n\
         [forces]\nmotor = { coordinate = \"x\", markers = [\"ground.O\", \"block.B\"] }\n";
-    let mechanism: Arc<Mechanism> = crate::common::parse(text);
+    let mechanism: Arc<Mechanism> = parse(text);
     let mut instance = started(instance_of(mechanism, Interface::CoSimulation));
     let (mut x, mut v) = (0.0, 0.0);
     for (step, force) in (0..).zip([4.0, -1.0, 0.0, 8.0]) {
