@@ -82,8 +82,8 @@
 pub mod cli;
 #[cfg(feature = "drawing")]
 pub mod drawing;
-#[cfg(feature = "fmi")]
 pub mod dynamics;
+#[cfg(feature = "fmi")]
 pub mod fmi;
 pub mod kinematics;
 pub mod mechanism;

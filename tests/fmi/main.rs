@@ -2,10 +2,14 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/differences.rs"]
+#[allow(dead_code, reason = "the tests of the solver use all of it")]
+mod differences;
 
 mod c_host;
 mod clauses;
 mod fmu_state;
+mod free;
 mod hostile;
 mod instance;
 mod model;

@@ -12,6 +12,7 @@ mod assembly;
 mod cam;
 mod closed_form;
 mod forces;
+mod free;
 mod integrator;
 mod modes;
 mod motion;

@@ -46,8 +46,9 @@ macro_rules! template {
 }
 
 /// The mechanisms that come with biela.
-static TEMPLATES: [Template; 45] = [
+static TEMPLATES: [Template; 52] = [
     template!("andrews"),
+    template!("andrews_free"),
     template!("bicycle_suspension"),
     template!("bonnet_hinge"),
     template!("cam_flat"),
@@ -57,7 +58,9 @@ static TEMPLATES: [Template; 45] = [
     template!("cam_points", "cam_points.csv"),
     template!("cam_roller"),
     template!("cam_roller_arm"),
+    template!("cart_pole"),
     template!("chebyshev"),
+    template!("double_pendulum"),
     template!("double_rocker"),
     template!("drag_link"),
     template!("elliptic_trammel"),
@@ -65,6 +68,7 @@ static TEMPLATES: [Template; 45] = [
     template!("excavator_arm"),
     template!("five_bar_robot"),
     template!("four_bar"),
+    template!("four_bar_free"),
     template!("geared_five_bar"),
     template!("hart_inversor"),
     template!("hatch"),
@@ -74,6 +78,7 @@ static TEMPLATES: [Template; 45] = [
     template!("parallelogram"),
     template!("peaucellier"),
     template!("pendulum"),
+    template!("pendulum_free"),
     template!("pick_and_place"),
     template!("planetary_gear"),
     template!("platform_3rpr"),
@@ -82,8 +87,10 @@ static TEMPLATES: [Template; 45] = [
     template!("scotch_yoke"),
     template!("sewing_machine"),
     template!("slider_crank"),
+    template!("slider_crank_motor"),
     template!("slotted_lever"),
     template!("stephenson_six_bar"),
+    template!("swinging_tip"),
     template!("tlv"),
     template!("tlv_crank"),
     template!("toggle_press"),

@@ -148,7 +148,9 @@ impl<'a> Context<'a> {
             canonical: syntax::canonical(document) + &self.file_tables,
             table_files: std::mem::take(&mut self.table_files),
         };
-        mechanism.start_at_estimates();
+        if !self.failed {
+            mechanism.start_at_estimates();
+        }
         mechanism.derived = self.derived(root.measures.items(), &mechanism);
         if !self.failed {
             self.warn_of_large_lengths();

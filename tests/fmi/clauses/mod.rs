@@ -19,14 +19,14 @@ use crate::common::Instance;
 use biela::fmi::{Interface, value_reference};
 
 /// Returns the value reference of a variable.
-fn vr(instance: &Instance, name: &str) -> u32 {
+pub(crate) fn vr(instance: &Instance, name: &str) -> u32 {
     let mut variables = instance.variables().iter();
     let found = variables.position(|variable| variable.name == name);
     value_reference(found.unwrap_or_else(|| panic!("no variable `{name}`")))
 }
 
 /// Returns the values of Real variables.
-fn get<const N: usize>(instance: &mut Instance, names: [&str; N]) -> [f64; N] {
+pub(crate) fn get<const N: usize>(instance: &mut Instance, names: [&str; N]) -> [f64; N] {
     let references = names.map(|name| vr(instance, name));
     let mut values = [0.0; N];
     let read = instance.get_real(&references, &mut values);
@@ -35,21 +35,21 @@ fn get<const N: usize>(instance: &mut Instance, names: [&str; N]) -> [f64; N] {
 }
 
 /// Sets Real variables.
-fn set<const N: usize>(instance: &mut Instance, values: [(&str, f64); N]) {
+pub(crate) fn set<const N: usize>(instance: &mut Instance, values: [(&str, f64); N]) {
     let references = values.map(|(name, _)| vr(instance, name));
     let set = instance.set_real(&references, &values.map(|(_, value)| value));
     set.unwrap_or_else(|error| panic!("{values:?}: {error}"));
 }
 
 /// Initializes at 0 s; in model exchange the host integrates then.
-fn started(mut instance: Instance) -> Instance {
+pub(crate) fn started(mut instance: Instance) -> Instance {
     instance.setup_experiment(0.0, None).expect("legal");
     initialized(&mut instance);
     instance
 }
 
 /// Initializes with the settings made.
-fn initialized(instance: &mut Instance) {
+pub(crate) fn initialized(instance: &mut Instance) {
     instance.enter_initialization_mode().expect("legal");
     instance.exit_initialization_mode().expect("it starts");
     if instance.interface() == Interface::ModelExchange {

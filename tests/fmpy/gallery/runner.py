@@ -115,7 +115,7 @@ def record(case: Case, fmu: Fmu) -> dict[str, np.ndarray]:
         start_time=0.0,
         stop_time=case.duration,
         output_interval=case.duration / case.steps,
-        start_values=case.parameters | ({"rates": USE_INPUTS} if inputs else {}),
+        start_values=case.parameters | ({"rates": USE_INPUTS} if drivers else {}),
         output=[*inputs, *fmu.names("output"), "solver.residual"],
     )
     return {column: np.array(result[column]) for column in result.dtype.names}

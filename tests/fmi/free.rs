@@ -1,0 +1,401 @@
+//! FMUs of mechanisms with freedoms: states that are saved, derivatives, model exchange beside
+//! co-simulation.
+
+use biela::dynamics::integrator::{ErrorControl, Failure, Integrator, Method, System};
+use biela::fmi::{
+    Causality, Error, Interface, MechanismModel, StepProgress, Version, value_reference,
+};
+use biela::mechanism::Mechanism;
+use std::sync::Arc;
+
+use crate::clauses::{get, initialized, set, started, vr};
+use crate::common::log::Heard;
+use crate::common::{Instance, folder, instance_of, parse, shipped};
+use crate::differences::{DIFFERENCE, differences};
+
+/// Mechanisms with a force input, if they have one, and with their freedoms.
+const FREE: [(&str, Option<&str>, &[&str]); 7] = [
+    ("pendulum_free", None, &["swing"]),
+    ("double_pendulum", None, &["shoulder", "elbow"]),
+    ("four_bar_free", Some("motor.effort"), &["crank_angle"]),
+    ("slider_crank_motor", Some("motor.effort"), &["crank_angle"]),
+    ("swinging_tip", None, &["swing"]),
+    ("cart_pole", Some("push.effort"), &["travel", "lean"]),
+    ("andrews_free", None, &["beta"]),
+];
+
+/// The four-bar with its rocker's angle as the freedom, which meets its dead points.
+const ROCKER: (&str, Option<&str>, &[&str]) = ("rocker", Some("motor.effort"), &["swing"]);
+
+/// A shipped mechanism, or the one above.
+fn mechanism(name: &str) -> Arc<Mechanism> {
+    if name != ROCKER.0 {
+        return shipped(name);
+    }
+    let path = folder("mechanisms").join("four_bar_free.toml");
+    let text = std::fs::read_to_string(path).expect("it is shipped");
+    let begin = text.find("crank_angle = ").expect("its freedom");
+    let end = begin + text[begin..].find('\n').expect("a line");
+    parse(&format!(
+        "{}swing = {{ coordinate = \"angle\", markers = [\"ground.O4\", \"rocker.O\"], \
+         start = \"122.82478*deg\", velocity = 4.0 }}{}",
+        &text[..begin],
+        &text[end..]
+    ))
+}
+
+fn instance(name: &str, interface: Interface, version: Version) -> Instance {
+    let mechanism = mechanism(name);
+    let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
+    Instance::of_version(version, model, Box::new(Heard::default()), false)
+}
+
+/// Initializes in co-simulation at 0 s.
+fn running(name: &str, version: Version) -> Instance {
+    let mut instance = instance(name, Interface::CoSimulation, version);
+    match version {
+        Version::Fmi2 => {
+            instance.setup_experiment(0.0, None).expect("legal");
+            instance.enter_initialization_mode().expect("legal");
+        }
+        _ => {
+            let entered = instance.enter_initialization_mode_at(0.0, None);
+            entered.expect("legal");
+        }
+    }
+    instance.exit_initialization_mode().expect("it starts");
+    instance
+}
+
+/// Takes a step, as a host of the instance's version does.
+fn step(instance: &mut Instance, t: f64, h: f64) {
+    if instance.version() == Version::Fmi2 {
+        instance.do_step(t, h).expect("it moves");
+    } else {
+        let progress = instance.begin_step(t, h).expect("it moves");
+        assert!(matches!(progress, StepProgress::Done(_)), "{progress:?}");
+    }
+}
+
+/// The step of a host: a thirtieth of the way that is sensible for each mechanism.
+fn step_size(name: &str) -> f64 {
+    if name == "andrews_free" { 1e-3 } else { 0.02 }
+}
+
+/// Takes steps with a motor whose torque changes, and returns the bits of all Reals after each.
+fn go_on(instance: &mut Instance, name: &str, input: Option<&str>, from: u32) -> Vec<Vec<u64>> {
+    let h = step_size(name);
+    let reals: Vec<u32> = (0..instance.variables().len())
+        .filter(|place| instance.variables()[*place].kind.is_real())
+        .map(value_reference)
+        .collect();
+    let steps = (from..from + 10).map(|index| {
+        let t = h * f64::from(index);
+        if let Some(input) = input {
+            set(instance, [(input, 0.3 * (7.0 * t).cos())]);
+        }
+        step(instance, t, h);
+        let values = instance.reals(&reals).expect("they exist");
+        values.map(f64::to_bits).collect()
+    });
+    steps.collect()
+}
+
+/// From a state in the middle of a run all goes on to the same bits: in the same instance, in
+/// another one that was elsewhere, and after the state has gone through bytes.
+#[test]
+fn a_state_in_the_middle_goes_on_to_the_same_bits() {
+    for version in [Version::Fmi2, Version::Fmi3] {
+        for (name, input, _) in FREE.into_iter().chain([ROCKER]) {
+            let mut straight = running(name, version);
+            let mut first = running(name, version);
+            go_on(&mut straight, name, input, 0);
+            go_on(&mut first, name, input, 0);
+            let expected = go_on(&mut straight, name, input, 10);
+
+            let state = first.fmu_state().expect("legal");
+            assert_eq!(go_on(&mut first, name, input, 10), expected, "{name}");
+            first.set_fmu_state(&state).expect("its own");
+            assert_eq!(go_on(&mut first, name, input, 10), expected, "{name}");
+
+            let mut other = running(name, version);
+            go_on(&mut other, name, input, 0);
+            go_on(&mut other, name, input, 10);
+            let bytes = first.serialize_fmu_state(&state).expect("its own");
+            let read = other.deserialize_fmu_state(&bytes).expect("untouched");
+            assert_eq!(read, state, "{name}");
+            other.set_fmu_state(&read).expect("the same mechanism");
+            assert_eq!(go_on(&mut other, name, input, 10), expected, "{name}");
+        }
+    }
+}
+
+/// The size of a host's step and what it reads between does not matter to the marks.
+#[test]
+fn small_steps_end_where_large_ones_do() {
+    for (name, _, freedoms) in FREE.into_iter().chain([ROCKER]) {
+        let h = 10.0 * step_size(name);
+        let mut large = running(name, Version::Fmi2);
+        let mut small = running(name, Version::Fmi2);
+        large.do_step(0.0, h).expect("it moves");
+        for step in 0..50 {
+            let t = h * f64::from(step) / 50.0;
+            let next = h * f64::from(step + 1) / 50.0;
+            small.do_step(t, next - t).expect("it moves");
+        }
+        for freedom in freedoms {
+            for rate in ["position", "velocity"] {
+                let output = format!("{freedom}.{rate}");
+                let [one] = get(&mut large, [&output]);
+                let [other] = get(&mut small, [&output]);
+                // The default tolerance of 1e-8, of a run of one step and of one of fifty.
+                let off = (one - other).abs() / (1.0 + one.abs());
+                assert!(off < 1e-7, "{name}, {output}: {one} {other}");
+            }
+        }
+    }
+}
+
+/// The value references of states, and of outputs that can be differentiated.
+fn states_and_unknowns(instance: &Instance) -> (Vec<u32>, Vec<u32>) {
+    let (mut states, mut unknowns) = (Vec::new(), Vec::new());
+    for (place, variable) in instance.variables().iter().enumerate() {
+        match variable.causality {
+            Causality::State => states.push(value_reference(place)),
+            Causality::Output if variable.kind.is_real() => unknowns.push(value_reference(place)),
+            _ => {}
+        }
+    }
+    (states, unknowns)
+}
+
+/// Derivatives of accelerations and of all outputs by states, force inputs and tunable parameters,
+/// against central differences.
+#[test]
+fn derivatives_in_model_exchange_are_those_of_differences() {
+    for version in [Version::Fmi2, Version::Fmi3] {
+        for (name, input, freedoms) in FREE {
+            let mut instance = instance(name, Interface::ModelExchange, version);
+            if version == Version::Fmi2 {
+                instance.setup_experiment(0.0, None).expect("legal");
+                initialized(&mut instance);
+            } else {
+                let entered = instance.enter_initialization_mode_at(0.0, None);
+                entered.expect("legal");
+                instance.exit_initialization_mode().expect("it starts");
+                instance.new_discrete_states().expect("legal");
+                instance.enter_continuous_time_mode().expect("legal");
+            }
+            let count = 2 * freedoms.len();
+            if version == Version::Fmi3 {
+                assert_eq!(instance.number_of_states(), Ok(count), "{name}");
+            }
+            // Away from rest, where much would vanish.
+            let start: Vec<f64> = instance.continuous_states(count).expect("known").collect();
+            let moved: Vec<f64> = start
+                .iter()
+                .zip(1..)
+                .map(|(x, k)| x + 0.1 * f64::from(k))
+                .collect();
+            instance.set_time(0.1 * step_size(name)).expect("legal");
+            instance.set_continuous_states(&moved).expect("legal");
+            if let Some(input) = input {
+                set(&mut instance, [(input, 0.7)]);
+            }
+            let (states, unknowns) = states_and_unknowns(&instance);
+            assert_eq!(states.len(), count, "{name}");
+            for (place, &known) in states.iter().enumerate() {
+                let exact = derivative(&mut instance, &unknowns, known);
+                let found = differences_by_state(&mut instance, &unknowns, &moved, place);
+                compare(&instance, name, &unknowns, known, &exact, &found);
+            }
+            if let Some(input) = input {
+                let known = vr(&instance, input);
+                let exact = derivative(&mut instance, &unknowns, known);
+                let found = differences(&mut instance, &unknowns, known);
+                compare(&instance, name, &unknowns, known, &exact, &found);
+            }
+        }
+    }
+}
+
+#[track_caller]
+fn derivative(instance: &mut Instance, unknowns: &[u32], known: u32) -> Vec<f64> {
+    let along = instance.directional_derivative(unknowns, &[known], &[1.0]);
+    along.unwrap_or_else(|error| panic!("{known}: {error}"))
+}
+
+/// Returns the derivatives of the unknowns by one state, by differences of fourth order.
+fn differences_by_state(
+    instance: &mut Instance,
+    unknowns: &[u32],
+    states: &[f64],
+    place: usize,
+) -> Vec<f64> {
+    // As in `differences`.
+    let step = 1e-5;
+    let mut moved = |steps: f64| -> Vec<f64> {
+        let mut states = states.to_vec();
+        states[place] += steps * step;
+        instance.set_continuous_states(&states).expect("legal");
+        instance.reals(unknowns).expect("it closes").collect()
+    };
+    let [far_before, before, after, far_after] = [-2.0, -1.0, 1.0, 2.0].map(&mut moved);
+    moved(0.0);
+    let way = (states[place] + step) - (states[place] - step);
+    let difference = |unknown: usize| {
+        let (near, far) = (
+            after[unknown] - before[unknown],
+            far_after[unknown] - far_before[unknown],
+        );
+        (8.0 * near - far) / (6.0 * way)
+    };
+    (0..unknowns.len()).map(difference).collect()
+}
+
+#[track_caller]
+fn compare(
+    instance: &Instance,
+    name: &str,
+    unknowns: &[u32],
+    known: u32,
+    exact: &[f64],
+    found: &[f64],
+) {
+    let label = |reference: u32| &instance.variables()[reference as usize - 1].name;
+    // Rounding of the difference of large values is that of the values.
+    let scale = exact.iter().fold(1.0_f64, |scale, d| scale.max(d.abs()));
+    for ((unknown, exact), found) in unknowns.iter().zip(exact).zip(found) {
+        let off = (exact - found).abs() / scale;
+        assert!(
+            off < DIFFERENCE,
+            "{name}: d {}/d {}: {exact}, by differences {found}",
+            label(*unknown),
+            label(known)
+        );
+    }
+}
+
+/// In initialization mode of co-simulation: by the starts of the states and by parameters, too.
+#[test]
+fn derivatives_in_initialization_are_those_of_differences() {
+    for (name, input, freedoms) in FREE {
+        let mut instance = instance(name, Interface::CoSimulation, Version::Fmi2);
+        instance.setup_experiment(0.0, None).expect("legal");
+        instance.enter_initialization_mode().expect("legal");
+        for (freedom, speed) in freedoms.iter().zip([0.8, -1.1]) {
+            set(&mut instance, [(&format!("{freedom}.velocity"), speed)]);
+        }
+        if let Some(input) = input {
+            set(&mut instance, [(input, 0.7)]);
+        }
+        let (states, unknowns) = states_and_unknowns(&instance);
+        let variables = instance.variables().iter().enumerate();
+        let parameters = variables
+            .filter(|(_, v)| v.causality == Causality::Parameter && v.kind.is_real())
+            .map(|(place, _)| value_reference(place));
+        let knowns: Vec<u32> = states
+            .iter()
+            .copied()
+            .chain(input.map(|input| vr(&instance, input)))
+            .chain(parameters)
+            .collect();
+        for known in knowns {
+            let exact = derivative(&mut instance, &unknowns, known);
+            let found = differences(&mut instance, &unknowns, known);
+            compare(&instance, name, &unknowns, known, &exact, &found);
+        }
+    }
+}
+
+/// A host of model exchange.
+struct Host<'a>(&'a mut Instance);
+
+impl System for Host<'_> {
+    type Cause = Error;
+
+    fn derivatives(&mut self, t: f64, x: &[f64], dx: &mut [f64]) -> Result<(), Failure<Error>> {
+        let read = |instance: &mut Instance, dx: &mut [f64]| -> Result<(), Error> {
+            instance.set_time(t)?;
+            instance.set_continuous_states(x)?;
+            let derivatives = instance.derivatives_of_states(x.len())?;
+            dx.iter_mut().zip(derivatives).for_each(|(to, d)| *to = d);
+            Ok(())
+        };
+        read(self.0, dx).map_err(Failure::Trial)
+    }
+
+    fn accept(&mut self, t: f64, x: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
+        let accept = |instance: &mut Instance| -> Result<(), Error> {
+            instance.set_time(t)?;
+            instance.set_continuous_states(x)?;
+            instance.completed_integrator_step().map(drop)
+        };
+        accept(self.0).map_err(Failure::Hard)
+    }
+}
+
+/// Integrated by the host, and by the FMU itself: the same, to the tolerances of both.
+#[test]
+fn model_exchange_goes_where_co_simulation_goes() {
+    for (name, _, freedoms) in FREE {
+        let until = 10.0 * step_size(name);
+        let mut itself = running(name, Version::Fmi2);
+        itself.do_step(0.0, until).expect("it moves");
+        let mut hosted = started(instance(name, Interface::ModelExchange, Version::Fmi2));
+        let count = 2 * freedoms.len();
+        let start: Vec<f64> = hosted.continuous_states(count).expect("known").collect();
+        let nominals = hosted.nominals(count).expect("known").collect();
+        let control = ErrorControl::new(1e-9, nominals).expect("valid");
+        let mut integrator =
+            Integrator::new(Method::Explicit, control, 0.0, start).expect("a valid start");
+        while integrator.state().t.to_bits() != until.to_bits() {
+            let stepped = integrator.advance(&mut Host(&mut hosted), until);
+            stepped.unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+        let found = &integrator.state().x;
+        let mut expected = Vec::new();
+        for freedom in freedoms {
+            for rate in ["position", "velocity"] {
+                expected.extend(get(&mut itself, [&format!("{freedom}.{rate}")]));
+            }
+        }
+        // States are in the order of the variables.
+        let (states, _) = states_and_unknowns(&hosted);
+        let names = states
+            .iter()
+            .map(|s| &hosted.variables()[*s as usize - 1].name);
+        for ((x, name_of), _) in found.iter().zip(names).zip(&expected) {
+            let [exact] = get(&mut itself, [name_of]);
+            let off = (x - exact).abs() / (1.0 + exact.abs());
+            assert!(off < 1e-7, "{name}, {name_of}: {x} {exact}");
+        }
+    }
+}
+
+/// A force that jumps at a communication point counts from there on: a block of 2 kg.
+#[test]
+fn a_force_that_jumps_acts_from_its_step_on() {
+    let text = "format = 1\nname = \"block\"\n[ground.markers]\nO = [0, 0]\n\
+        [bodies.block]\nmarkers = { B = [0, 0] }\nmass = 2\n\
+        [joints]\nguide = { type = \"translational\", markers = [\"ground.O\", \"block.B\"] }\n\
+        [freedoms]\nx = { coordinate = \"x\", markers = [\"ground.O\", \"block.B\"] }\n\
+        [forces]\nmotor = { coordinate = \"x\", markers = [\"ground.O\", \"block.B\"] }\n";
+    let mechanism: Arc<Mechanism> = parse(text);
+    let mut instance = started(instance_of(mechanism, Interface::CoSimulation));
+    let (mut x, mut v) = (0.0, 0.0);
+    for (step, force) in (0..).zip([4.0, -1.0, 0.0, 8.0]) {
+        set(&mut instance, [("motor.effort", force)]);
+        // A reading before the step sees the new force at the old place.
+        let [acceleration, velocity] = get(&mut instance, ["x.acceleration", "x.velocity"]);
+        assert!((acceleration - 0.5 * force).abs() < 1e-14);
+        assert!((velocity - v).abs() < 1e-13);
+        instance
+            .do_step(0.5 * f64::from(step), 0.5)
+            .expect("it moves");
+        x += 0.5 * v + 0.0625 * force;
+        v += 0.25 * force;
+        let found = get(&mut instance, ["x.position", "x.velocity"]);
+        assert!((found[0] - x).abs() < 1e-12 && (found[1] - v).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,24 @@
+//! Free motion against truths written apart.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `taylor`, `minimal` | Lagrange's equations in minimal coordinates |
+//! | `run` | a mechanism that moves freely, and its comparison with a truth |
+//! | `pendulum` | elliptic functions |
+//! | `closed_form` | springs, trains of wheels, rolling |
+//! | `lagrange` | minimal coordinates |
+//! | `published` | Andrews' mechanism, the problems of the IFToMM library |
+//! | `invariance` | other freedoms, names, orders, places; time reversed |
+//! | `refused` | what has no inertia, what meets a dead point |
+//! | `state` | saved and restored |
+
+mod closed_form;
+mod invariance;
+mod lagrange;
+mod minimal;
+mod pendulum;
+mod published;
+mod refused;
+mod run;
+mod state;
+mod taylor;
