@@ -345,7 +345,7 @@ class Mechanism:
 
         >>> space = pendulum.linearize(balance=True, variables=["rod.phi"])
         >>> print(abs(space.eigenvalues).round(6))
-        [3.132092 3.132092]
+        [5.424942 5.424942]
         """
         names, _, indices = self._chosen(variables)
         drivers, q, states, inputs, matrices = self._inner.linearize(

@@ -191,9 +191,15 @@ def test_the_program_is_the_module():
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_examples_of_docstrings_run(name, four_bar):
+def test_examples_of_docstrings_run(name, four_bar, mechanism):
     module = importlib.import_module(name)
-    names = {"np": np, "biela": biela, "four_bar": four_bar, "text": four_bar.text}
+    names = {
+        "np": np,
+        "biela": biela,
+        "four_bar": four_bar,
+        "pendulum": mechanism("pendulum_free"),
+        "text": four_bar.text,
+    }
     tests = doctest.DocTestFinder().find(module, extraglobs=names)
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     for test in tests:
