@@ -168,6 +168,45 @@ fn steps_and_events_of_fmi_3_allocate_nothing() {
     }
 }
 
+/// Steps by integration, with a motor whose torque changes and parameters that stay.
+#[test]
+fn steps_of_free_motion_allocate_nothing() {
+    for name in [
+        "pendulum_free",
+        "double_pendulum",
+        "four_bar_free",
+        "swinging_tip",
+    ] {
+        let mut instance = silent(name);
+        let place = |wanted: &str| {
+            let mut variables = instance.variables().iter();
+            let place = variables.position(|variable| variable.name == wanted);
+            place.map(biela::fmi::value_reference)
+        };
+        let motor = place("motor.effort");
+        let outputs: Vec<u32> = ["rod.phi", "crank.alpha", "energy.kinetic", "coupler.vx"]
+            .into_iter()
+            .filter_map(place)
+            .collect();
+        assert!(!outputs.is_empty(), "{name}");
+        let mut values = vec![0.0; outputs.len()];
+        instance.setup_experiment(0.0, None).expect("legal");
+        instance.enter_initialization_mode().expect("legal");
+        instance.exit_initialization_mode().expect("it starts");
+        let mut step = |instance: &mut common::Instance, index: i32| {
+            let t = 0.01 * f64::from(index);
+            if let Some(motor) = motor {
+                instance.set_real(&[motor], &[0.1 * t]).expect("legal");
+            }
+            instance.do_step(t, 0.01).expect("it moves");
+            instance.get_real(&outputs, &mut values).expect("legal");
+        };
+        step(&mut instance, 0);
+        let count = allocations(|| (1..100).for_each(|index| step(&mut instance, index)));
+        assert_eq!(count, 0, "{name}");
+    }
+}
+
 /// Tables whose parameters move: their splines are found anew at each sub-step.
 #[test]
 fn a_tunable_table_allocates_nothing() {

@@ -5,12 +5,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::check::with_unit;
+use super::check::{estimates, with_unit};
 use crate::cli::conditions::Conditions;
 use crate::cli::error::Error;
 use crate::cli::free::AtRest;
 use crate::cli::output::print;
-use crate::cli::suggested_estimates::as_estimates;
 
 /// Find the stable equilibrium to which a mechanism with freedoms comes down from its start.
 ///
@@ -35,11 +34,6 @@ impl Balance {
             let value = with_unit(driver.coordinate.kind, *value);
             let _ = writeln!(out, "  {} = {value}", driver.name);
         }
-        let lines = as_estimates(mechanism, &at.solver.pose().q);
-        let _ = write!(
-            out,
-            "\nestimates of this pose, to paste into the tables of the bodies\n\n{lines}"
-        );
-        print(&out)
+        print(&(out + &estimates(&at.solver)))
     }
 }

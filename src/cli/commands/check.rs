@@ -340,7 +340,8 @@ fn describe_play(mechanism: &Arc<Mechanism>, error: &kinematics::Error) -> Strin
     )
 }
 
-fn estimates(solver: &Solver) -> String {
+/// Returns the pose as estimates, with a heading.
+pub(super) fn estimates(solver: &Solver) -> String {
     let lines = as_estimates(solver.mechanism(), &solver.pose().q);
     format!("\nestimates of this pose, to paste into the tables of the bodies\n\n{lines}")
 }
