@@ -8,6 +8,7 @@ use super::input::Input;
 use super::signals::Signals;
 use crate::dynamics::{self, FreeMotion, StateSpace};
 use crate::kinematics::{Output, Solution, Solver};
+use crate::mechanism::CoordinateKind;
 
 /// A mechanism with freedoms, at its start with the velocities of its file, or at rest.
 pub(super) struct AtRest {
@@ -26,27 +27,59 @@ impl AtRest {
         let start = mechanism.simulation.start;
         let scenario = conditions.scenario(mechanism, start, None)?;
         let solver = scenario.solver(input.assemble()?);
-        let mut solver = solver.map_err(|error| input.error_at(start, &error))?;
+        let solver = solver.map_err(|error| input.error_at(start, &error))?;
+        Self::start(input.source.name(), solver, scenario.signals)
+    }
+
+    /// Begins at a solver's pose; `file` names the mechanism in messages.
+    pub(super) fn start(file: &str, mut solver: Solver, signals: Signals) -> Result<Self, Error> {
         let mut solution = Solution::new(&solver);
         solution.seek_forces(&solver);
-        let name = input.source.name().to_owned();
-        let stopped = |error: dynamics::Error| stopped(&name, &error);
-        let free = FreeMotion::new(&solver, mechanism.simulation.tolerance).map_err(stopped)?;
+        let stopped = |error: dynamics::Error| stopped(file, &error);
+        let tolerance = solver.mechanism().simulation.tolerance;
+        let free = FreeMotion::new(&solver, tolerance).map_err(stopped)?;
         let Some(mut free) = free else {
             return Err(Error::Usage(format!(
-                "{name}: the mechanism has no freedom: all that moves is driven"
+                "{file}: the mechanism has no freedom: all that moves is driven"
             )));
         };
         let held = solver.pose().drivers.clone();
-        let part = scenario.signals.part(start, &held);
+        let part = signals.part(solver.pose().time, &held);
         free.start(&mut solver, &part).map_err(stopped)?;
         solution.driver_rates.copy_from_slice(free.drivers());
         Ok(Self {
-            file: name,
+            file: file.to_owned(),
             solver,
             solution,
             free,
-            signals: scenario.signals,
+            signals,
+        })
+    }
+
+    /// Returns name, kind of coordinate, inertia and acceleration of each freedom \[SI\].
+    pub(super) fn freedoms(&self) -> impl Iterator<Item = (&str, CoordinateKind, f64, f64)> {
+        let inertia = self.free.inertia();
+        let freedoms = self.free.freedoms().iter().enumerate();
+        freedoms.map(move |(k, id)| {
+            let driver = &self.solver.mechanism().drivers[id.index()];
+            let acceleration = self.free.drivers()[id.index()].second();
+            (
+                &*driver.name,
+                driver.coordinate.kind,
+                inertia[(k, k)],
+                acceleration,
+            )
+        })
+    }
+
+    /// Returns whether nothing moves and nothing begins to.
+    pub(super) fn is_balanced(&self) -> bool {
+        /// An acceleration of this part of gravity's is rounding \[m/s² or rad/s²\].
+        const AT_REST: f64 = 1e-9;
+        let mut freedoms = self.free.freedoms().iter();
+        freedoms.all(|id| {
+            let rates = self.free.drivers()[id.index()].derivatives;
+            rates[0] == 0.0 && rates[1].abs() < AT_REST
         })
     }
 

@@ -113,7 +113,8 @@ impl FreeMotion {
     }
 
     /// Returns J of the freedoms at the last point at which accelerations were solved.
-    pub(super) fn inertia(&self) -> DMatrix<f64> {
+    #[must_use]
+    pub fn inertia(&self) -> DMatrix<f64> {
         let inertia = &self.equations.motion().inertia;
         let index = |k: usize| self.freedoms()[k].index();
         let count = self.freedoms().len();

@@ -3,7 +3,7 @@
 mod forces;
 pub(in crate::cli) mod json;
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,15 +12,17 @@ use clap::{Args, ValueEnum};
 use forces::Forces;
 
 use crate::cli::error::Error;
+use crate::cli::free::AtRest;
 use crate::cli::input::{Input, warn_of_misfits};
 use crate::cli::message::Message;
 use crate::cli::output::print;
+use crate::cli::signals::Signals;
 use crate::cli::suggested_estimates::as_estimates;
 use crate::cli::times::Times;
 use crate::kinematics::{self, Mode, Modes, Origin, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
-    shown,
+    CoordinateKind, DerivedMeasure, Driver, DriverId, DriverSource, Jet, Mechanism, Order, Unit,
+    fixed, rounded, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -115,6 +117,10 @@ impl Check {
             Message::Warning(excursion).show();
         }
         print(&describe_pose(&mut solver))?;
+        if mechanism.drivers.iter().any(Driver::is_free) {
+            let at = AtRest::start(input.source.name(), input.assemble()?, Signals::default());
+            print(&describe_free_motion(&mut at?)?)?;
+        }
         if mechanism.has_dynamics() {
             let forces = Forces::at_rest(&mut solver).map_err(|error| input.error(error))?;
             print(&forces.describe(mechanism))?;
@@ -175,6 +181,47 @@ fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
         let _ = write!(title, ": {}", mechanism.description);
     }
     format!("{title}\n\n{out}")
+}
+
+/// Tells inertia and acceleration of each freedom at the start, and how they swing if they are at rest
+/// there.
+fn describe_free_motion(at: &mut AtRest) -> Result<String, Error> {
+    let mut out = "\nfree motion at the start\n".to_owned();
+    for (name, kind, inertia, acceleration) in at.freedoms() {
+        let [of_inertia, of_acceleration] = [kind.inertia_unit(), kind.units()[2]];
+        let _ = writeln!(
+            out,
+            "  {name}: inertia {}{}, acceleration {}{}",
+            shown(inertia),
+            of_inertia.suffix(),
+            shown(acceleration),
+            of_acceleration.suffix()
+        );
+    }
+    if !at.is_balanced() {
+        return Ok(out);
+    }
+    for root in at.linearize(&[])?.a.complex_eigenvalues().iter() {
+        let size = root.re.hypot(root.im);
+        if root.im > 0.0 {
+            let (frequency, damping) = (size / TAU, -root.re / size);
+            let (frequency, damping) = (shown(rounded(frequency, 6)), fixed(damping, 4));
+            let _ = writeln!(out, "  swings at {frequency} Hz, damping ratio {damping}");
+        } else if root.im == 0.0 && root.re > 0.0 {
+            let _ = writeln!(
+                out,
+                "  falls away, e-fold in {} s",
+                shown(rounded(1.0 / root.re, 6))
+            );
+        } else if root.im == 0.0 && root.re < 0.0 {
+            let _ = writeln!(
+                out,
+                "  comes to rest, e-fold in {} s",
+                shown(rounded(-1.0 / root.re, 6))
+            );
+        }
+    }
+    Ok(out)
 }
 
 /// Returns the number of equations of each joint.

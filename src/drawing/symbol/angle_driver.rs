@@ -1,8 +1,9 @@
-//! Drivers of angles: arcs with an arrow.
+//! Drivers of angles, and freedoms: arcs with an arrow.
 
 use std::f64::consts::{PI, TAU};
 
 use super::*;
+use crate::mechanism::Driver;
 
 /// A driver of an angle.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +14,8 @@ pub struct AngleDriver {
     pub from: Anchor,
     /// Marker j, at which it is drawn.
     pub to: Anchor,
+    /// Whether it is a freedom, whose arrow is open.
+    pub is_free: bool,
 }
 
 /// Radius of the arc.
@@ -23,8 +26,13 @@ const SEEN: f64 = PI / 9.0;
 const SMALL_ARC: f64 = 1.6;
 
 /// Composes the driver of an angle.
-pub(super) fn compose(composer: &mut Composer, name: String, from: Anchor, to: Anchor) {
-    composer.add(AngleDriver { name, from, to });
+pub(super) fn compose(composer: &mut Composer, driver: &Driver, from: Anchor, to: Anchor) {
+    composer.add(AngleDriver {
+        name: driver.name.clone(),
+        from,
+        to,
+        is_free: driver.is_free(),
+    });
 }
 
 impl Shape for AngleDriver {
@@ -44,6 +52,7 @@ impl Shape for AngleDriver {
         } else {
             (towards - 0.5 * SMALL_ARC, SMALL_ARC)
         };
+        pen.open_arrows = self.is_free;
         pen.arc_arrow(
             Layer::Driver,
             (center, ARC),
@@ -51,6 +60,7 @@ impl Shape for AngleDriver {
             Colour::DRIVER,
             LINE,
         );
+        pen.open_arrows = false;
         let mut candidates = Vec::new();
         for (part, cost) in [(0.5, 0.0), (0.7, 1.0), (0.3, 1.0), (0.9, 3.0), (0.1, 3.0)] {
             let side = on_sheet_direction(start + part * turn);

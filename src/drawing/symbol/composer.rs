@@ -173,7 +173,7 @@ impl<'a> Composer<'a> {
         let coordinate = &driver.coordinate;
         let [from, to] = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
         if coordinate.kind.is_angle() {
-            return angle_driver::compose(self, driver.name.clone(), from, to);
+            return angle_driver::compose(self, driver, from, to);
         }
         let axis = self.axis(coordinate);
         let guided = self.mechanism.joints.iter().any(|joint| {

@@ -17,6 +17,8 @@ pub struct LengthDriver {
     /// Length of the barrel of a cylinder between the two points \[m\]; `None` for a dimension line
     /// beside them, where something else is between them.
     pub barrel: Option<f64>,
+    /// Whether it is a freedom, whose arrows are open.
+    pub is_free: bool,
 }
 
 /// Length of a line without room for two arrows.
@@ -48,6 +50,7 @@ pub(super) fn compose(
         to,
         axis,
         barrel,
+        is_free: driver.is_free(),
     });
 }
 
@@ -67,7 +70,9 @@ impl Shape for LengthDriver {
         } else {
             line.offset = BESIDE * aside.dot(&across(along));
             let is_short = (to - from).dot(&along).abs() < SHORT;
+            pen.open_arrows = self.is_free;
             draw_dimension(pen, line, pen.moving || !is_short);
+            pen.open_arrows = false;
             0.0
         };
         let ends = line.ends(pen.q, pen.scale);

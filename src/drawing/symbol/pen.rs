@@ -48,6 +48,8 @@ pub(in crate::drawing) struct Pen<'a> {
     middle: Point,
     /// Whether the mechanism starts to move: marks then keep their shape in their frames.
     pub(super) moving: bool,
+    /// Whether the tips of arrows are open, as those of freedoms are.
+    pub(super) open_arrows: bool,
     others: OtherPoses<'a>,
     /// The frame that the next marks and labels move with.
     attachment: Attachment,
@@ -99,6 +101,7 @@ impl<'a> Pen<'a> {
             scale,
             middle: on_sheet(middle, scale),
             moving: matches!(others, OtherPoses::Motion(_)),
+            open_arrows: false,
             others,
             attachment: Attachment::Ground,
             marks: Vec::new(),
@@ -323,8 +326,15 @@ impl<'a> Pen<'a> {
         let [length, half] = ARROW;
         let base = tip - length * along;
         let aside = half * across(along);
-        let outline = Outline::polygon(&[tip, base + aside, base - aside]);
-        self.area(layer, outline, (colour, 1.0), None);
+        if self.open_arrows {
+            let shaft = Outline::line(&[base, tip]);
+            self.line(layer, shaft, colour, LINE);
+            let outline = Outline::line(&[base + aside, tip, base - aside]);
+            self.line(layer, outline, colour, LINE);
+        } else {
+            let outline = Outline::polygon(&[tip, base + aside, base - aside]);
+            self.area(layer, outline, (colour, 1.0), None);
+        }
     }
 
     // -- names -------------------------------------------------------------------------------
