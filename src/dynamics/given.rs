@@ -1,4 +1,4 @@
-//! What comes from outside during a free motion.
+//! Inputs from outside during a free motion.
 
 use crate::mechanism::{DriverId, Jet};
 

@@ -183,15 +183,17 @@ fn compare_turns(mechanism: &Arc<Mechanism>, drivers: &[usize], part: f64) -> bo
 }
 
 /// Drivers of the shipped mechanisms that are angles and turn fully.
-const TURNING: &str = "andrews.beta bonnet_hinge.opening cam_flat.cam_angle cam_flat_arm.cam_angle \
-    cam_knife.cam_angle cam_knife_arm.cam_angle cam_points.cam_angle cam_roller.cam_angle \
-    cam_roller_arm.cam_angle chebyshev.coupler_angle double_rocker.worm_angle \
-    drag_link.crank_angle elliptic_trammel.bar_angle engine.crank_angle \
-    five_bar_robot.left_angle five_bar_robot.right_angle four_bar.crank_angle \
+const TURNING: &str = "andrews.beta andrews_free.beta bonnet_hinge.opening cam_flat.cam_angle \
+    cam_flat_arm.cam_angle cam_knife.cam_angle cam_knife_arm.cam_angle cam_points.cam_angle \
+    cam_roller.cam_angle cam_roller_arm.cam_angle cart_pole.lean chebyshev.coupler_angle \
+    double_pendulum.shoulder double_pendulum.elbow double_rocker.worm_angle drag_link.crank_angle \
+    elliptic_trammel.bar_angle engine.crank_angle five_bar_robot.left_angle \
+    five_bar_robot.right_angle four_bar.crank_angle four_bar_free.crank_angle \
     geared_five_bar.crank_angle hatch.opening jansen_leg.crank_angle parallelogram.crank_angle \
-    pendulum.swing_angle planetary_gear.sun_angle rack_drive.crank_angle rolling_wheel.turn \
-    scotch_yoke.crank_angle sewing_machine.shaft_angle slider_crank.crank_angle \
-    slotted_lever.crank_angle stephenson_six_bar.crank_angle tlv_crank.arm_angle \
+    pendulum.swing_angle pendulum_free.swing planetary_gear.sun_angle rack_drive.crank_angle \
+    rolling_wheel.turn scotch_yoke.crank_angle sewing_machine.shaft_angle \
+    slider_crank.crank_angle slider_crank_motor.crank_angle slotted_lever.crank_angle \
+    stephenson_six_bar.crank_angle swinging_tip.swing tlv_crank.arm_angle \
     toggle_press.crank_angle v_twin.crank_angle valve_train.cam_angle watt_six_bar.crank_angle \
     whitworth.crank_angle wiper.motor_angle";
 

@@ -124,7 +124,7 @@ impl MechanismModel {
             path,
             forces: &course.force_inputs,
         };
-        let steps = free.statistics().accepted;
+        let steps = state.integrator.statistics.accepted;
         let moved = free
             .resume(solver, state)
             .and_then(|()| free.jump(solver, &given, &path.to))
@@ -169,10 +169,12 @@ impl MechanismModel {
             forces: &course.force_inputs,
         };
         let velocity = |freedom: DriverId| course.inputs[freedom.index()].get(Order::Velocity);
-        free.restart(solver, &given, velocity).map_err(failed)?;
-        if let Some(state) = &mut course.free {
-            free.save(state);
-        }
+        let state = course.free.as_mut().expect("made with the motion");
+        // Nothing is left of a run before a reset, such as the length of its steps.
+        free.resume(solver, state)
+            .and_then(|()| free.restart(solver, &given, velocity))
+            .map_err(failed)?;
+        free.save(state);
         Ok(())
     }
 

@@ -21,7 +21,7 @@ use crate::mechanism::{DriverId, Jet};
 pub struct EquationsOfMotion {
     /// J, a row and a column per driver \[kg, kg m or kg m²\].
     pub inertia: DMatrix<f64>,
-    /// What each driver exerts where none accelerates \[N or N m\].
+    /// Effort of each driver where none accelerates \[N or N m\].
     pub bias: Vec<f64>,
     /// Power of all applied forces but gravity \[W\].
     pub applied_power: f64,

@@ -3,8 +3,8 @@
 use biela::fmi::{Causality, Error, Failure, Interface, Quantity, State, StateError};
 use biela::mechanism::Order;
 
-use crate::common::{FmuState, Instance, instance_of, references, stems};
-use crate::fmu_state::{act, go_on, initialized, instance, look};
+use crate::common::{FmuState, Instance, instance_of, references};
+use crate::fmu_state::{act, go_on, initialized, instance, look, mechanisms};
 
 /// The state as another instance reads it.
 fn through_bytes(from: &Instance, to: &mut Instance, state: &FmuState) -> FmuState {
@@ -36,7 +36,7 @@ fn assert_replays(name: &str, instance: &mut Instance, from: u32) {
 
 #[test]
 fn from_a_state_on_everything_is_as_it_was() {
-    for name in stems("mechanisms", "toml") {
+    for name in mechanisms() {
         for settings in [[1, 1], [3, 2]] {
             let mut instance = initialized(&name, settings);
             for step in 0..7 {
@@ -51,7 +51,7 @@ fn from_a_state_on_everything_is_as_it_was() {
 /// state, after getting one, and from one in another instance that had been elsewhere.
 #[test]
 fn getting_a_state_leaves_no_trace() {
-    for name in stems("mechanisms", "toml") {
+    for name in mechanisms() {
         let mut straight = initialized(&name, [1, 1]);
         let mut watched = initialized(&name, [1, 1]);
         let mut other = initialized(&name, [3, 2]);
@@ -75,7 +75,7 @@ fn getting_a_state_leaves_no_trace() {
 /// A reset instance goes on like a new one, wherever it has been.
 #[test]
 fn a_reset_instance_goes_on_like_a_new_one() {
-    for name in stems("mechanisms", "toml") {
+    for name in mechanisms() {
         let mut new = instance(&name);
         let mut used = initialized(&name, [1, 1]);
         for step in 0..30 {

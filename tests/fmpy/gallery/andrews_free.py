@@ -9,7 +9,7 @@ import numpy as np
 
 from . import Case
 from .andrews import ANGLES, DURATION, END, START, solve
-from .free import free_motion, mass_on
+from .free import LIMITS, free_motion, mass_on
 
 TORQUE, STIFFNESS, FREE = 0.033, 4530.0, 0.07785
 
@@ -41,9 +41,7 @@ def loads(z, _time):
     return [(z[0], np.array([TORQUE])), (spring, -STIFFNESS * (spring.value - FREE))]
 
 
-MOTION = free_motion(
-    masses, start=[START.value[0]], velocity=[0.0], loads=loads, gravity=0.0
-)
+MOTION = free_motion(masses, start=[START.value[0]], velocity=[0.0], loads=loads, gravity=0.0)
 
 
 def truth(time, _drivers):
@@ -59,6 +57,5 @@ CASE = Case(
     drivers=lambda time: {},
     truth=truth,
     duration=DURATION,
-    # Relative to the largest magnitude; the motor turns faster and faster.
-    limits=(1e-7, 1e-7, 1e-6),
+    limits=LIMITS,
 )

@@ -15,9 +15,8 @@ from scipy.integrate import solve_ivp
 
 from .taylor import Taylor
 
-#: The FMU's tolerance, relative to the largest magnitude, with the growth of errors over the
-#: motion; accelerations are as exact as the states that they follow from.
-LIMITS = (1e-7, 1e-7, 1e-6)
+#: The FMU's tolerance; accelerations are as exact as the states that they follow from.
+LIMITS = (1e-8, 1e-8, 1e-8)
 #: SciPy's own tolerance.
 TOLERANCE = 1e-13
 GRAVITY = -9.81j

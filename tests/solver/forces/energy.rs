@@ -149,7 +149,8 @@ fn the_derivative_of_an_effort_by_an_acceleration_is_the_inertia() {
         let rcond = loaded.solver.rcond();
         let inputs = vec![0.0; loaded.inputs.len()];
         for (index, driver) in mechanism.drivers.iter().enumerate() {
-            if driver.motion().is_some() {
+            // The bias is told for inputs alone.
+            if driver.motion().is_some() || driver.is_free() {
                 continue;
             }
             let mut direction = Direction {

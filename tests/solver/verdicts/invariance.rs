@@ -31,7 +31,10 @@ const STEPS: usize = 24;
 
 fn run(mechanism: &Arc<Mechanism>) -> Option<Run> {
     let input = |driver: &biela::mechanism::Driver| driver.motion().is_none();
-    let driver = mechanism.drivers.iter().position(input)?;
+    // A freedom first: it is not an unrelated driver.
+    let mut freedoms = mechanism.drivers.iter();
+    let freedom = freedoms.position(biela::mechanism::Driver::is_free);
+    let driver = freedom.or_else(|| mechanism.drivers.iter().position(input))?;
     let (mut solver, mut path) = assembled(mechanism);
     let start = solver.pose().drivers[driver];
     let way = if mechanism.drivers[driver].coordinate.kind.is_angle() {
