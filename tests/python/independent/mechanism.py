@@ -16,6 +16,11 @@ from .expressions import Names, evaluate
 from .frames import GROUND, Frame, Vector, frame
 
 
+def moving(file: dict) -> dict:
+    """Returns the coordinates that are driven, freedoms among them: the tests drive these too."""
+    return {**file.get("drivers", {}), **file.get("freedoms", {})}
+
+
 class Mechanism:
     """Mechanism file with numbers for its parameters; those in `changed` replace the file's."""
 
@@ -36,7 +41,7 @@ class Mechanism:
         }
         self.motions = {
             name: tables.motion(driver["motion"], self.names, folder)
-            for name, driver in file.get("drivers", {}).items()
+            for name, driver in moving(file).items()
             if "motion" in driver
         }
 
@@ -93,7 +98,7 @@ class Placed:
             rows += JOINTS[joint["type"]](self.entry(joint, place))
         for constraint in file.get("constraints", {}).values():
             rows.append(held(self.entry(constraint)))
-        for name, driver in file.get("drivers", {}).items():
+        for name, driver in moving(file).items():
             rows.append(coordinate(self.entry(driver)) - driven[name])
         return rows
 
@@ -107,7 +112,7 @@ class Placed:
         for marker in outputs.get("markers", []):
             point = self.frame(marker).point
             found |= {f"{marker}.x": point.x, f"{marker}.y": point.y}
-        for name, entry in {**file.get("drivers", {}), **file.get("measures", {})}.items():
+        for name, entry in {**moving(file), **file.get("measures", {})}.items():
             if "coordinate" in entry:
                 found[f"{name}.position"] = coordinate(self.entry(entry))
         return found
