@@ -64,7 +64,7 @@ impl EquationsOfMotion {
     /// Solves ∂q/∂u of each driver at the pose, at which the plan is factorised.
     fn solve_units(&mut self, compiled: &mut CompiledMechanism, state: &mut State) {
         if let ([unit], true) = (&mut self.units[..], state.has_single_driver()) {
-            unit.clone_from(&state.tangent);
+            unit.copy_from(&state.tangent);
             return;
         }
         for (driver, unit) in self.units.iter_mut().enumerate() {

@@ -29,6 +29,12 @@ impl Rates {
         &self.acceleration
     }
 
+    /// Copies other rates of as many coordinates.
+    pub(in crate::kinematics) fn copy_from(&mut self, other: &Self) {
+        self.velocity.copy_from_slice(&other.velocity);
+        self.acceleration.copy_from_slice(&other.acceleration);
+    }
+
     /// Returns velocity and acceleration, to be written.
     pub(in crate::kinematics) fn both_mut(&mut self) -> (&mut [f64], &mut [f64]) {
         (&mut self.velocity, &mut self.acceleration)
