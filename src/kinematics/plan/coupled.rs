@@ -35,8 +35,8 @@ pub(in crate::kinematics) struct CoupledBlock {
     jacobian: Jacobian,
     condition: Condition,
     residual: Vec<f64>,
-    /// The largest residual in multiples of its rounding error, and that at the start of the
-    /// sub-step.
+    /// Largest residual in multiples of its rounding error, at the last evaluation and at the start
+    /// of the sub-step.
     excess: f64,
     start_excess: f64,
     correction: Vec<f64>,
@@ -45,10 +45,10 @@ pub(in crate::kinematics) struct CoupledBlock {
     segment: CheckedSegment,
     /// The markers of its bodies.
     markers: Vec<MarkerId>,
-    /// Largest distance of these from the origins of the bodies, as a part of the size of their
-    /// part of the mechanism: an angle moves points by as much.
+    /// Largest distance of a marker from its body's origin, divided by the size of the block's part
+    /// of the mechanism: a small angle moves the marker by that many sizes per radian.
     length: f64,
-    /// The size of that part, as a part of the mechanism's size.
+    /// Size of the block's part of the mechanism, divided by the mechanism's size.
     part: f64,
 }
 
@@ -103,8 +103,8 @@ impl CoupledBlock {
 
     /// Replaces the Jacobian by its factors.
     fn decompose(&mut self) -> Result<(), Rejected> {
-        // A row that hardly depends on the block's own unknowns makes them run away, however
-        // well the rows of the block agree with each other.
+        // Pivots are compared with the upstream entries too: a row that hardly depends on the
+        // block's own unknowns makes these run away when upstream ones move.
         let Jacobian { lu, upstream } = &mut self.jacobian;
         let upstream = upstream.iter().map(|entry| entry.value.abs());
         lu.factorise(upstream.fold(0.0, f64::max))
@@ -133,8 +133,8 @@ impl SolveBlock for CoupledBlock {
         &self.equations.columns
     }
 
-    /// Returns the work of evaluating, factorising and bounding the rows a few times, and of the
-    /// inverse where it is written down.
+    /// Returns the work of evaluating, factorising and bounding the rows a few times, and of
+    /// computing the inverse if there is one.
     fn work(&self) -> f64 {
         let order = self.equations.rows.len() as f64;
         let inverse = if self.test.inverse.is_empty() {
@@ -273,10 +273,11 @@ impl SolveBlock for CoupledBlock {
         self.condition.rcond(&mut self.jacobian.lu)
     }
 
-    /// Returns the ratio of the extreme pivots. Along a row of loops it falls with the square of
-    /// their number, however far from a singular position they are; this effect is left out.
+    /// Returns the ratio of the smallest to the largest pivot. In a row of loops the ratio falls
+    /// with the square of the number of loops, even far from singular positions; a factor cancels
+    /// this effect.
     fn regularity(&self) -> f64 {
-        /// Most unknowns that are no row of loops yet.
+        /// Unknowns up to which a block does not count as a row of loops.
         const FEW: f64 = 24.0;
         let (low, high) = self.jacobian.lu.pivot_range();
         let row = (self.equations.rows.len() as f64 / FEW).max(1.0);

@@ -16,12 +16,13 @@ use crate::kinematics::state::State;
 
 /// An origin with less than this part of the largest residual has no part in the gap.
 const TAKES_PART: f64 = 1e-3;
-/// Most origins in a large mechanism of which a smallest contradictory set is looked for, by
+/// Most origins of a large mechanism among which a smallest contradictory set is looked for, by
 /// leaving them out one by one.
 const MOST_ELEMENTS: usize = 12;
 
-/// Explains why a mechanism does not close. It is at a nearest pose, where its rows are open by up
-/// to `gap`, scaled.
+/// Returns the error for a mechanism that does not close. `gap` is its largest scaled residual.
+///
+/// Before: the bodies are at the nearest pose.
 pub(super) fn explain_open(
     compiled: &mut CompiledMechanism,
     state: &mut State,
@@ -47,7 +48,7 @@ pub(super) fn explain_open(
         return error;
     }
     let mut open = origins_open(compiled, state, &all, gap);
-    // Excess drivers ask for a motion that the constraints, closed by themselves, do not give.
+    // With excess drivers the constraints close by themselves.
     let constraints = constraint_rows(&compiled.system);
     let without_drivers = close_on(&compiled.system, state, &constraints, estimate);
     if without_drivers.is_none()
@@ -63,7 +64,7 @@ pub(super) fn explain_open(
         open = origins_open(compiled, state, &all, 0.0);
     }
     if is_small(system) || open.len() <= MOST_ELEMENTS {
-        // The origin declared first stays, of two that can replace each other.
+        // The origin declared first stays, where two of them can replace each other.
         for origin in open.clone().into_iter().rev() {
             let others: Vec<_> = open.iter().copied().filter(|e| *e != origin).collect();
             if close_on(system, state, &system.rows_of(&others), estimate).is_some() {
@@ -73,7 +74,7 @@ pub(super) fn explain_open(
     }
     let rows = system.rows_of(&open);
     let origins = open.clone();
-    // People look for one joint that does not meet: the one declared last.
+    // The gap is shown in one joint, the one declared last: people look for one that is open.
     let is_driver = |origin: &Origin| matches!(origin, Origin::Driver(_));
     let last = open.iter().rfind(|origin| !is_driver(origin));
     let Some(&last) = last.or(open.last()) else {
@@ -134,9 +135,10 @@ fn origins_open(
     origins
 }
 
-/// Returns whether some of these rows depend on the others, on which the mechanism is closed. A
-/// loop that is too short does not close, but could if it were longer; rows that depend on the
-/// others have no say whatever.
+/// Returns whether some of these rows depend on the others. Such rows contradict the others; a loop
+/// that is merely too short has independent rows.
+///
+/// Before: the mechanism is closed on the others.
 fn depend_on(
     compiled: &CompiledMechanism,
     state: &State,

@@ -11,12 +11,13 @@ use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism};
 
-/// A row of which no more than this is left, scaled, depends on the others. A singular position
-/// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
-/// 1e-2.
+/// Largest scaled remainder of a row that depends on the others. At a singular position, which is
+/// located to the square root of the rounding, remainders are about 1e-8; at a distance of [`AWAY`]
+/// from it they are about 1e-2.
 pub(in crate::kinematics) const DEPENDENT: f64 = 1e-6;
-/// Distance to the place that tells redundancy from a singular position, in radians and
-/// characteristic lengths: enough for rank to show, not so far that it is another mechanism.
+/// Distance of the other poses that tell redundancy from a singular position, in radians and
+/// characteristic lengths: far enough for the rank to change, near enough for the mechanism to
+/// close.
 const AWAY: f64 = 0.03;
 /// A factor in a combination of rows below this part of the largest is rounding.
 const TAKES_PART: f64 = 1e-6;
@@ -67,8 +68,8 @@ pub(super) fn find_freedom(
     Ok(generic.redundant)
 }
 
-/// Returns the ranks where the drivers have moved a little, both ways, as far as the mechanism
-/// closes there. Excess drivers hold each other.
+/// Returns the ranks after the drivers have moved a little forwards, and backwards, without the
+/// poses at which the mechanism does not close, as with excess drivers.
 fn ranks_with_drivers_moved(
     compiled: &CompiledMechanism,
     state: &mut State,
@@ -99,7 +100,8 @@ fn ranks_with_drivers_moved(
     found
 }
 
-/// Returns the ranks a little way along a motion that the constraints leave free, both ways.
+/// Returns the ranks a little forwards, and backwards, along a motion that the constraints leave
+/// free.
 fn ranks_along_constraints(
     compiled: &CompiledMechanism,
     state: &mut State,
@@ -146,7 +148,7 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
         let mut set: Vec<_> = others.into_iter().map(|(row, _)| origin(row)).collect();
         let is_driver = |origin: &Origin| matches!(origin, Origin::Driver(_));
         if set.iter().any(is_driver) {
-            // Drivers that exclude each other; the joints only transmit it.
+            // Drivers exclude each other; the joints between them are not the cause.
             set.retain(is_driver);
         }
         set.push(origin(left_out.row));
@@ -256,8 +258,8 @@ pub(in crate::kinematics) fn jacobian_rows(
     rows.map(gradient).collect()
 }
 
-/// Explains a pose at which the rows all together lose rank: names the bodies that can move there
-/// though no driver does.
+/// Returns the error for a pose at which all rows together lose rank. Names the bodies that can
+/// move there while the drivers rest.
 pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> Error {
     let system = &compiled.system;
     let rows = jacobian_rows(compiled, state);
@@ -272,7 +274,7 @@ pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> 
     let mut echelon = eliminate(DEPENDENT);
     let mut rcond = 0.0;
     if echelon.free().is_empty() {
-        // Nearly singular: without the weakest row.
+        // The pose is nearly singular: the motion is the one that the weakest row prevents.
         rcond = weakest(&echelon);
         echelon = eliminate(rcond);
     }
@@ -288,10 +290,10 @@ pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> 
 
 /// Returns the names of the bodies that move in the motions left by the rows of `echelon`.
 fn moved_by(system: &System, echelon: &Echelon) -> Vec<String> {
-    /// A part of the largest motion that is not rounding.
+    /// Least part of the largest motion that is not rounding.
     const MOVES: f64 = 1e-5;
-    /// More motions than this are looked at in mixtures of all of them, several times: a
-    /// coincidence in which motions cancel does not come twice.
+    /// Most motions that are looked at one by one. More of them are looked at in several mixtures
+    /// of all: motions that cancel in one mixture do not cancel in another.
     const FEW: usize = 64;
     const MIXTURES: usize = 8;
     let free = echelon.free();
@@ -313,7 +315,7 @@ fn moved_by(system: &System, echelon: &Echelon) -> Vec<String> {
     system.describe_moved(largest.into_iter().enumerate(), MOVES)
 }
 
-/// Returns the least that is left of a row of `echelon`.
+/// Returns the least remainder of a row of `echelon`.
 pub(super) fn weakest(echelon: &Echelon) -> f64 {
     let left = echelon.kept().iter().map(|kept| kept.remainder);
     left.fold(1.0, f64::min)

@@ -6,22 +6,21 @@ use super::Run;
 use crate::kinematics::singular::CROSSING_END;
 use crate::mechanism::DriverId;
 
-/// Least ratio of a sub-step to the rejected one before it: the certificate of a much too long
-/// sub-step gives no reliable ratio.
+/// Least ratio of a sub-step to the rejected one before it: the ratio that the certificate of a
+/// much too long sub-step suggests is not reliable.
 const LEAST_RATIO: f64 = 0.1;
-/// Ratio of a sub-step to the rejected one before it, without a ratio from the certificate.
+/// Ratio of a sub-step to the rejected one before it if the certificate suggests none.
 pub(super) const HALF: f64 = 0.5;
 /// Largest ratio of a sub-step to the accepted one before it.
 const LARGEST_RATIO: f64 = 4.0;
 /// Safety factor on the length that the certificate of another sub-step suggests.
 const ROOM: f64 = 0.85;
-/// A path is blocked where a sub-step of this part of it is rejected.
+/// Minimum sub-step, as a part of the path. The path is blocked where such a sub-step is rejected.
 const SMALLEST_SUBSTEP: f64 = 1e-12;
-/// The same for the first sub-step, which may lead away from a dead point, from as near as the
-/// motion came to it. The motion slows down there as it has come on.
+/// Minimum first sub-step; smaller, as the motion may start next to a dead point.
 const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
-/// The same where the search is given up early: a pose that needs shorter ones is next to a singular
-/// position.
+/// Minimum sub-step of a search that gives up early: a pose that needs shorter ones is next to a
+/// singular position.
 const SMALLEST_WITHOUT_SEARCH: f64 = 1e-4;
 
 /// The end of a sub-step.

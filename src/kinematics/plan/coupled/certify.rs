@@ -28,17 +28,19 @@ use crate::kinematics::system::Target;
 /// First trial radii, as a multiple of the square of the largest move of an unknown: a motion that
 /// turns by φ deviates from its chord by φ²/8 in radians, and rarely by twenty times that.
 const FIRST_RADIUS: f64 = 2.5;
-/// Their least and largest part of that move.
+/// Least and largest ratio of the first trial radii to that move.
 const FIRST_PART: [f64; 2] = [0.1, 0.2];
-/// Second trial radii where the first are too large, as a multiple of η.
+/// Second trial radii, as a multiple of η, if the first ones are too large.
 const SMALLER_RADIUS: f64 = 2.0;
 /// The norm of K that the next sub-step aims at.
 const GOOD_CONTRACTION: f64 = 0.6;
 
 impl CoupledBlock {
-    /// Notes residuals and angles at the start of the sub-step and, for a block without an inverse,
-    /// the effect of moving parameters on its rows. The block was evaluated last at the start; its
-    /// unknowns are there, earlier ones at their ends.
+    /// Stores the residuals and angles at the start of the sub-step and, for a block without an
+    /// inverse, the effect of moving parameters on its rows.
+    ///
+    /// Before: the block was evaluated last at the start of the sub-step, where its own unknowns
+    /// still are; upstream unknowns are at the end.
     pub(super) fn note_start(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.start_excess = self.excess;
         let bodies = 3 * state.system.mechanism().bodies.len();
@@ -59,7 +61,8 @@ impl CoupledBlock {
         }
     }
 
-    /// Notes twice the values that rows have at the start for the numbers at the end.
+    /// Stores 2 |c(q at the start) − target| of each row with the parameters at the end of the
+    /// sub-step, for rows that have no enclosure.
     #[cold]
     fn note_moved(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.test.note_ends(state);
@@ -104,7 +107,7 @@ impl CoupledBlock {
         };
         self.test.return_to_ends(state);
         self.clear_region(step);
-        // Chord and radii grow together: K grows rather with the square of the sub-step.
+        // Chord and radii both grow with the sub-step, so K grows about as its square.
         let step_ratio = |contraction: f64| contraction / GOOD_CONTRACTION;
         let contraction = match tried {
             Ok(contraction) => contraction,
@@ -172,12 +175,12 @@ impl CoupledBlock {
         }
     }
 
-    /// Looks for radii that pass the test and leaves the smallest ones found in `next`. Returns
-    /// the norm of K for them.
+    /// Looks for radii that pass the test and writes the smallest ones found to `next`. Returns the
+    /// norm of K for them.
     ///
     /// # Errors
     ///
-    /// Without such radii the norm of K, if it is known.
+    /// The norm of K, if it is known, where no radii pass the test.
     fn find_radii(
         &mut self,
         state: &mut BlockState<'_>,
@@ -186,7 +189,7 @@ impl CoupledBlock {
         let first = self.lay_chord(state, step);
         let columns = self.equations.columns.iter();
         for (radius, &column) in self.test.radii.iter_mut().zip(columns) {
-            // The scale of an unknown in the block as a part of that in its part of the mechanism.
+            // Lengths scale with the block's arms, not with the whole part of the mechanism.
             let is_angle = state.system.is_angle(column);
             *radius = if is_angle { first } else { first * self.length };
         }
@@ -210,7 +213,7 @@ impl CoupledBlock {
                 if shrunk {
                     return Err(Some(contraction));
                 }
-                // Far smaller ones do where the motion is nearly straight.
+                // Far smaller radii are enough where the motion is nearly straight.
                 shrunk = true;
                 for (radius, eta) in test.radii.iter_mut().zip(&test.eta) {
                     *radius = radius.min((SMALLER_RADIUS * eta).max(f64::EPSILON * *radius));
@@ -301,8 +304,8 @@ impl CoupledBlock {
         test.eta = eta;
     }
 
-    /// Writes η + K r to `next`, with the trial radii or else `next` itself as r. Returns the norm
-    /// of K, weighted by the trial radii.
+    /// Writes η + K r to `next`; r are the trial radii if `tried`, otherwise the present `next`.
+    /// Returns the norm of K, weighted by the trial radii.
     fn contract(&mut self, tried: bool) -> f64 {
         let test = &mut *self.test;
         let mut row = std::mem::take(&mut test.row);

@@ -1,27 +1,27 @@
 //! The estimate that replaces the certificate of a block whose inverse is too large to be written
 //! down.
 //!
-//! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds only the change of
-//! the Jacobian within the radii, which are of second order in the sub-step. Its change along the
-//! chord only tells how much larger A(s) may be than A = J⁻¹ at the end of the sub-step:
+//! The certificate takes A in the middle of the chord; here A(s) is the inverse of the Jacobian at
+//! each place s of the chord. K then contains only the change of the Jacobian within the radii,
+//! which are of second order in the sub-step. A(s) itself is not computed: A = J⁻¹ at the end of
+//! the sub-step bounds it by
 //!
 //! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J)|, in the largest norm.
 //!
-//! The links of a long row of loops all turn alike: their changes in A J have signs and cancel,
-//! while bounds of them would add up with the square of the row's length. So c comes from the
-//! Jacobian itself where it differs most, at the far end of the chord, and the values of the rows
-//! on the chord come from their values in its middle. One radius r serves all unknowns, and the
-//! test is
+//! In a long row of loops all links turn alike. The signed changes of A J then cancel, but their
+//! bounds would add up with the square of the row's length. Therefore c is computed from the
+//! Jacobian at the far end of the chord, where it differs most, and the values of the rows on the
+//! chord are taken from the middle of the chord. All unknowns share one radius r. The test is
 //!
 //! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all other bounds of the rows).
 //!
-//! Norms are estimated from below, and one place represents the whole chord. The factor [`MARGIN`]
-//! allows for both, and the sub-step is *checked*, not proved.
+//! Two things are not bounds: norms are estimated from below, and one place represents the whole
+//! chord. The factor [`MARGIN`] allows for both. The sub-step is *checked*, not proved.
 //!
-//! A contour may have a lobe or a notch anywhere between two places. The rows that depend on one
-//! are bounded over the whole chord: an eighth of the second derivative along it is the value that
-//! it leaves them, and their gradients differ from those at its end by at most twice their change
-//! around its middle.
+//! A contour may have a lobe or a notch between two places, so rows that depend on a contour are
+//! bounded over the whole chord. Their values on the chord are at most an eighth of the bound of
+//! the second derivative along it. Their gradients differ from those at its end by at most twice
+//! the bound of their change around its middle.
 
 use super::CoupledBlock;
 use super::contraction::{
@@ -45,13 +45,15 @@ pub(super) struct Passed {
 }
 
 impl CoupledBlock {
-    /// Looks for a radius that passes the test and leaves it in `next`. Returns the sum of c and
-    /// the norm of K. Moves the bodies from the end of the sub-step, where the block is factorised,
-    /// to its middle.
+    /// Looks for a radius that passes the test and writes it to `next`. Returns the sum of c and
+    /// the norm of K.
+    ///
+    /// Before: the bodies are at the end of the sub-step, where the block is factorised. After:
+    /// they are in the middle of the chord.
     ///
     /// # Errors
     ///
-    /// Without such a radius the sum of c and the norm of K, if they are known.
+    /// The sum of c and the norm of K, if they are known, where no radius passes the test.
     pub(super) fn estimate_radii(
         &mut self,
         state: &mut BlockState<'_>,
@@ -68,8 +70,8 @@ impl CoupledBlock {
     }
 
     /// Tests the chord of `step` and moves the bodies to its middle. `drift` is the norm of A times
-    /// the change of the Jacobian at the far end of the chord, `astray` a bound of the distance of
-    /// that end from the motion, scaled; the first trial radius is `room` times the distance of
+    /// the change of the Jacobian at the far end of the chord. `astray` is a bound of the scaled
+    /// distance of that end from the motion. The first trial radius is `room` times the distance of
     /// the chord from the motion.
     ///
     /// # Errors
