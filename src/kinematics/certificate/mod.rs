@@ -100,7 +100,7 @@ pub(super) struct StepBounds {
 }
 
 /// A test is accepted up to this part of the largest step that it allows.
-const MARGIN: f64 = 0.9;
+const ACCEPTED: f64 = 0.9;
 
 impl Pivots {
     /// Returns the pivots of no body.
@@ -299,7 +299,7 @@ impl Gap {
     /// 1 + 0.6 q up to q = 0.9; the step ratio is never less than q / 0.9.
     #[inline(always)]
     pub(super) fn new(open: f64, linear: f64, square: f64) -> Self {
-        let step_ratio = (4.0 * open * square + 2.0 * linear) * (1.0 / MARGIN);
+        let step_ratio = (4.0 * open * square + 2.0 * linear) * (1.0 / ACCEPTED);
         Self {
             step_ratio,
             value: open * (1.0 + 0.6 * step_ratio) / (1.0 - linear),

@@ -20,10 +20,11 @@ use super::elimination::EliminationOrder;
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
-use crate::kinematics::constraint::configuration::{Configuration, ROUNDING};
+use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::linear::{Condition, Factors, Lu, nan_or_larger};
-use crate::kinematics::newton::{Correction, Limits, Rejected, STALLED};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::{System, Targets};
+use crate::kinematics::tolerances::{NEGLIGIBLE_LENGTH, STALLED};
 use crate::mechanism::{Jet, MarkerId};
 
 pub(super) use equations::column_owners;
@@ -156,7 +157,7 @@ impl SolveBlock for CoupledBlock {
         self.equations.set_size(system, at);
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
         let longest = arms.fold(0.0, f64::max);
-        self.length = if longest > ROUNDING {
+        self.length = if longest > NEGLIGIBLE_LENGTH {
             (longest / (at.size() * self.part)).min(1.0)
         } else {
             1.0

@@ -5,9 +5,7 @@ use std::fmt;
 
 use super::closure::close_on_all;
 use super::contradiction::explain_open;
-use super::rank::{
-    DEPENDENT, drivers_first, find_freedom, jacobian_rows, singular_position, weakest,
-};
+use super::rank::{drivers_first, find_freedom, jacobian_rows, singular_position, weakest};
 use super::slip::explain_misfit;
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::estimate::go_to_estimate;
@@ -15,11 +13,12 @@ use crate::kinematics::assembly::gaps::open_joints;
 use crate::kinematics::assembly::least_squares::holds;
 use crate::kinematics::error::{Error, OpenJoint};
 use crate::kinematics::linear::{Echelon, Row};
-use crate::kinematics::newton::{Limits, SINGULAR};
+use crate::kinematics::newton::Limits;
 use crate::kinematics::path::Path;
 use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, RedundantRows};
 use crate::kinematics::state::State;
 use crate::kinematics::system::structure::Structure;
+use crate::kinematics::tolerances::{DEPENDENT, SINGULAR};
 
 /// Least remainder of an accepted row. Rows are accepted in the order of declaration: what an
 /// accepted one leaves of later rows may be less, and these are set aside.

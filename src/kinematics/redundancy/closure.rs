@@ -6,11 +6,11 @@ use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::assembly::part::SMALL_PART;
 use crate::kinematics::assembly::search::{NoBranch, search};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::newton::SINGULAR;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::Target;
 use crate::kinematics::system::structure::Structure;
+use crate::kinematics::tolerances::SINGULAR;
 
 /// Scaled remainder after elimination up to which a row is superfluous in its block. A block with
 /// such a row is singular and closes only to the square root of the residual, far above rounding.

@@ -1,7 +1,7 @@
 //! The explanation of a mechanism that does not close on all its rows.
 
 use super::closure::find_start;
-use super::rank::{DEPENDENT, constraint_rows, find_freedom, jacobian_rows};
+use super::rank::{constraint_rows, find_freedom, jacobian_rows};
 use super::slip::{AGREES, contradiction, explain_slip};
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::closure::{close_near, close_on, is_small};
@@ -13,9 +13,10 @@ use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
+use crate::kinematics::tolerances::DEPENDENT;
 
 /// An origin with less than this part of the largest residual has no part in the gap.
-const TAKES_PART: f64 = 1e-3;
+const NOTICEABLE: f64 = 1e-3;
 /// Most origins of a large mechanism among which a smallest contradictory set is looked for, by
 /// leaving them out one by one.
 const MOST_ELEMENTS: usize = 12;
@@ -127,7 +128,7 @@ fn origins_open(
     let system = &compiled.system;
     let rows = rows.iter().filter(|&&row| {
         let value = system.evaluate_row(row, state.values(), |_, _| {});
-        value.value.abs() >= TAKES_PART * largest
+        value.value.abs() >= NOTICEABLE * largest
     });
     let mut origins: Vec<_> = rows.map(|&row| system.equations()[row].origin).collect();
     origins.sort_unstable();

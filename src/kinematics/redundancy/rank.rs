@@ -5,22 +5,17 @@ use crate::kinematics::Origin;
 use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::Error;
-use crate::kinematics::linear::{Echelon, ReducedRow, Row};
+use crate::kinematics::linear::{Echelon, ReducedRow, Row, spread};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
+use crate::kinematics::tolerances::{DEPENDENT, LEAST_COEFFICIENT};
 use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism};
 
-/// Largest scaled remainder of a row that depends on the others. At a singular position, which is
-/// located to the square root of the rounding, remainders are about 1e-8; at a distance of [`AWAY`]
-/// from it they are about 1e-2.
-pub(in crate::kinematics) const DEPENDENT: f64 = 1e-6;
 /// Distance of the other poses that tell redundancy from a singular position, in radians and
 /// characteristic lengths: far enough for the rank to change, near enough for the mechanism to
 /// close.
 const AWAY: f64 = 0.03;
-/// A factor in a combination of rows below this part of the largest is rounding.
-const TAKES_PART: f64 = 1e-6;
 
 /// Ranks at one pose.
 struct Ranks {
@@ -144,7 +139,7 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
     for left_out in &ranks.excess {
         let equations = system.equations();
         let origin = |row: usize| equations[row].origin;
-        let others = ranks.echelon.combination(left_out, TAKES_PART);
+        let others = ranks.echelon.combination(left_out, LEAST_COEFFICIENT);
         let mut set: Vec<_> = others.into_iter().map(|(row, _)| origin(row)).collect();
         let is_driver = |origin: &Origin| matches!(origin, Origin::Driver(_));
         if set.iter().any(is_driver) {
@@ -322,8 +317,7 @@ pub(super) fn weakest(echelon: &Echelon) -> f64 {
 }
 
 /// Returns a factor for the k-th of several motions, so that they do not cancel: from a half to
-/// one and a half, spread evenly by the golden ratio.
+/// one and a half.
 fn mixture(k: usize) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    0.5 + (GOLDEN * (k + 1) as f64).fract()
+    0.5 + spread(k + 1)
 }

@@ -5,7 +5,7 @@
 //! chance. Therefore the rank is computed at the nearest pose, with a tolerance that grows with the
 //! gap.
 
-use super::rank::{DEPENDENT, constraint_rows, jacobian_rows};
+use super::rank::{constraint_rows, jacobian_rows};
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
@@ -14,6 +14,7 @@ use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
+use crate::kinematics::tolerances::DEPENDENT;
 use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};
 
 /// Largest scaled residual, less its rounding, of rows that agree. A motion multiplies the residual
@@ -22,7 +23,7 @@ use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};
 pub(super) const AGREES: f64 = 1e-12;
 /// Largest residual of a redundant row that counts as rounding, in multiples of the row's own
 /// rounding error: the solved rows add theirs.
-const ROUNDINGS: f64 = 1e3;
+const REDUNDANT_ROUNDINGS: f64 = 1e3;
 /// Largest scaled gap between constraints that are meant to agree.
 const LARGEST: f64 = 0.03;
 /// Ratio of the largest remainder of a nearly dependent row to the square root of the gap: next to
@@ -33,7 +34,7 @@ const LEFT: f64 = 4.0;
 const MOST_LEFT: f64 = 0.2;
 /// Ratio of a coefficient in a combination of rows to the remainder of the combination. Smaller
 /// coefficients are attributed to the gap.
-const TAKES_PART: f64 = 3.0;
+const ABOVE_REMAINDER: f64 = 3.0;
 
 /// Returns the error for redundant constraints that are open by more than rounding.
 ///
@@ -45,7 +46,7 @@ pub(super) fn explain_misfit(compiled: &CompiledMechanism, state: &mut State) ->
         let value = system.evaluate_row(row, state.values(), |_, _| {});
         (
             value.value.abs(),
-            value.value.abs() - ROUNDINGS * value.rounding,
+            value.value.abs() - REDUNDANT_ROUNDINGS * value.rounding,
         )
     });
     let (gap, excess) = open.fold((0.0_f64, 0.0_f64), |(gap, excess), row| {
@@ -122,7 +123,7 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
         });
         let miss = sum.abs() / total;
         if worst.as_ref().is_none_or(|(most, _)| miss > *most) {
-            let least = TAKES_PART * dependent.remainder.max(DEPENDENT);
+            let least = ABOVE_REMAINDER * dependent.remainder.max(DEPENDENT);
             let others = combination.into_iter();
             let others = others.filter(|(_, factor)| factor.abs() > least);
             let mut origins: Vec<_> = others.map(|(other, _)| equations[other].origin).collect();

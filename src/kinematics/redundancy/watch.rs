@@ -14,7 +14,7 @@ use crate::kinematics::state::State;
 const OPEN_BETWEEN: f64 = 1e-4;
 /// Largest move of an unknown, in radians and characteristic lengths, in a sub-step whose row has
 /// no bound, because pieces of the profile meet there. The row is then checked at both ends only.
-const NARROW: f64 = 1e-3;
+const SHORT: f64 = 1e-3;
 
 /// Bounds over a sub-step the rows set aside that depend on a contour. Allocates nothing.
 ///
@@ -32,7 +32,7 @@ pub(in crate::kinematics) fn watch_between(
     rows.try_for_each(|row| {
         let step_ratio = match open_between(compiled, state, row, bounds) {
             Ok(open) => open / OPEN_BETWEEN,
-            Err(largest_move) if largest_move <= NARROW => {
+            Err(largest_move) if largest_move <= SHORT => {
                 bounds.checked = true;
                 0.0
             }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Run;
 use crate::kinematics::singular::CROSSING_END;
+use crate::kinematics::tolerances::SMALLEST_SUBSTEP;
 use crate::mechanism::DriverId;
 
 /// Least ratio of a sub-step to the rejected one before it: the ratio that the certificate of a
@@ -14,9 +15,7 @@ pub(super) const HALF: f64 = 0.5;
 /// Largest ratio of a sub-step to the accepted one before it.
 const LARGEST_RATIO: f64 = 4.0;
 /// Safety factor on the length that the certificate of another sub-step suggests.
-const ROOM: f64 = 0.85;
-/// Minimum sub-step, as a part of the path. The path is blocked where such a sub-step is rejected.
-const SMALLEST_SUBSTEP: f64 = 1e-12;
+const SAFETY: f64 = 0.85;
 /// Minimum first sub-step; smaller, as the motion may start next to a dead point.
 const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
 /// Minimum sub-step of a search that gives up early: a pose that needs shorter ones is next to a
@@ -73,7 +72,7 @@ impl Run<'_> {
     pub(super) fn ratio_to_rejected(&self) -> Option<f64> {
         let ratio = self.bounds.step_ratio();
         let is_known = ratio.is_finite() && ratio > 1.0;
-        is_known.then(|| (ROOM / ratio.sqrt()).max(LEAST_RATIO))
+        is_known.then(|| (SAFETY / ratio.sqrt()).max(LEAST_RATIO))
     }
 
     /// Returns the length to try after a sub-step of length `h` was accepted. After a rejection
@@ -85,7 +84,7 @@ impl Run<'_> {
         } else {
             LARGEST_RATIO
         };
-        h * (ROOM / self.bounds.step_ratio().sqrt()).min(largest)
+        h * (SAFETY / self.bounds.step_ratio().sqrt()).min(largest)
     }
 
     /// Returns an end of the sub-step, no further than `end`, up to which a driver moves by `most`

@@ -20,10 +20,13 @@
 //! [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
 
 use super::CoupledBlock;
-use super::contraction::{ContractionTest, LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY};
-use crate::kinematics::newton::{AT_ROUNDING, Rejected};
+use super::contraction::{
+    ContractionTest, LARGER_RADII, LARGEST_CONTRACTION, MOST_TRIES, STRICTLY,
+};
+use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::step::{BlockState, Step};
 use crate::kinematics::system::Target;
+use crate::kinematics::tolerances::AT_ROUNDING;
 
 /// First trial radii, as a multiple of the square of the largest move of an unknown: a motion that
 /// turns by φ deviates from its chord by φ²/8 in radians, and rarely by twenty times that.
@@ -222,7 +225,7 @@ impl CoupledBlock {
             }
             last = Some(contraction);
             for (radius, next) in test.radii.iter_mut().zip(&test.next) {
-                *radius = radius.max(ROOM * next / (1.0 - contraction));
+                *radius = radius.max(LARGER_RADII * next / (1.0 - contraction));
             }
         }
         Err(Some(1.0))

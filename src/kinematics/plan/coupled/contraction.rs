@@ -10,7 +10,7 @@ use crate::kinematics::system::{System, Target};
 /// Most torn unknowns of a block whose inverse A is computed entry by entry.
 pub(super) const MOST_TORN: usize = 32;
 /// Safety factor on the next trial radii, where those tried were too small.
-pub(super) const ROOM: f64 = 1.25;
+pub(super) const LARGER_RADII: f64 = 1.25;
 /// Most radii that are tried.
 pub(super) const MOST_TRIES: u32 = 4;
 /// Norm of K above which larger radii cannot pass: smaller ones are tried once, then the sub-step

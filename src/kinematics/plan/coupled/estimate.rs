@@ -16,7 +16,7 @@
 //! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all other bounds of the rows).
 //!
 //! Two things are not bounds: norms are estimated from below, and one place represents the whole
-//! chord. The factor [`MARGIN`] allows for both. The sub-step is *checked*, not proved.
+//! chord. The factor [`SAFETY`] allows for both. The sub-step is *checked*, not proved.
 //!
 //! A contour may have a lobe or a notch between two places, so rows that depend on a contour are
 //! bounded over the whole chord. Their values on the chord are at most an eighth of the bound of
@@ -25,15 +25,15 @@
 
 use super::CoupledBlock;
 use super::contraction::{
-    ContractionTest, Estimate, LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY,
+    ContractionTest, Estimate, LARGER_RADII, LARGEST_CONTRACTION, MOST_TRIES, STRICTLY,
 };
 use crate::kinematics::linear::{Factors, nan_or_larger};
-use crate::kinematics::newton::STALLED;
 use crate::kinematics::plan::step::{BlockState, Step};
 use crate::kinematics::system::Target;
+use crate::kinematics::tolerances::STALLED;
 
 /// Safety factor on estimates.
-const MARGIN: f64 = 2.0;
+const SAFETY: f64 = 2.0;
 
 /// The result of a test that was passed.
 pub(super) struct Passed {
@@ -64,7 +64,7 @@ impl CoupledBlock {
         self.move_to_chord(state, step, 0.0);
         self.evaluate_rows(state);
         let drift = self.drift();
-        let passed = self.test_chord(state, step, [drift, 0.0], ROOM)?;
+        let passed = self.test_chord(state, step, [drift, 0.0], LARGER_RADII)?;
         self.test.next.fill(passed.next);
         Ok(passed.contraction)
     }
@@ -84,7 +84,7 @@ impl CoupledBlock {
         [drift, astray]: [f64; 2],
         room: f64,
     ) -> Result<Passed, Option<f64>> {
-        let drift = MARGIN * drift;
+        let drift = SAFETY * drift;
         if drift.is_nan() {
             return Err(None);
         }
@@ -98,7 +98,7 @@ impl CoupledBlock {
             *slack += rounding + moved;
         }
         let larger = 1.0 / (1.0 - drift);
-        let gap = larger * MARGIN * (self.farthest() + astray);
+        let gap = larger * SAFETY * (self.farthest() + astray);
         let mut radius = room * gap + f64::EPSILON;
         let mut last = None;
         for _ in 0..MOST_TRIES {
@@ -119,7 +119,7 @@ impl CoupledBlock {
                 return Err(Some(contraction));
             }
             last = Some(contraction);
-            radius = ROOM * next / (1.0 - contraction);
+            radius = LARGER_RADII * next / (1.0 - contraction);
         }
         Err(Some(1.0))
     }
@@ -241,6 +241,6 @@ impl CoupledBlock {
             ..
         } = &mut **test;
         let lu = &mut jacobian.lu;
-        Some([&*open, &*row].map(|b| MARGIN * condition.largest_row(lu, b)))
+        Some([&*open, &*row].map(|b| SAFETY * condition.largest_row(lu, b)))
     }
 }
