@@ -1,6 +1,6 @@
 //! Model exchange. There are no continuous states and no event indicators.
 
-use super::types::{fmi2EventInfo, fmi2False};
+use super::types::{fmi2Boolean, fmi2EventInfo, fmi2False, fmi2Real};
 use crate::fmi::Call;
 use crate::fmi::abi::arguments::{fill, room};
 use crate::fmi::abi::calls::instance_calls;
@@ -11,7 +11,7 @@ instance_calls! {
     /// `fmi2EnterContinuousTimeMode`.
     fmi2EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
     /// `fmi2SetTime`.
-    fmi2SetTime(time: f64) = |instance| instance.set_time(time);
+    fmi2SetTime(time: fmi2Real) = |instance| instance.set_time(time);
     /// `fmi2NewDiscreteStates`: there are no discrete states. The simulation ends at an event for
     /// whose values no pose exists.
     fmi2NewDiscreteStates(event_info: *mut fmi2EventInfo) = |instance| {
@@ -31,9 +31,9 @@ instance_calls! {
     /// `fmi2CompletedIntegratorStep`. Nothing is kept for going back, so that
     /// `no_set_fmu_state_prior_to_current_point` makes no difference.
     fmi2CompletedIntegratorStep(
-        _no_set_fmu_state_prior_to_current_point: i32,
-        enter_event_mode: *mut i32,
-        terminate_simulation: *mut i32,
+        _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
+        enter_event_mode: *mut fmi2Boolean,
+        terminate_simulation: *mut fmi2Boolean,
     ) = |instance| {
         instance.allow(Call::CompletedIntegratorStep)?;
         let enter = room("enterEventMode", enter_event_mode, 1)?;
@@ -44,23 +44,23 @@ instance_calls! {
         Ok(())
     };
     /// `fmi2SetContinuousStates`: there are none.
-    fmi2SetContinuousStates(_: *const f64, count: usize) = |instance| {
+    fmi2SetContinuousStates(_: *const fmi2Real, count: usize) = |instance| {
         instance.continuous(Call::SetContinuousStates, count)
     };
     /// `fmi2GetDerivatives`: there are no continuous states.
-    fmi2GetDerivatives(_: *mut f64, count: usize) = |instance| {
+    fmi2GetDerivatives(_: *mut fmi2Real, count: usize) = |instance| {
         instance.continuous(Call::GetDerivatives, count)
     };
     /// `fmi2GetEventIndicators`: there are none.
-    fmi2GetEventIndicators(_: *mut f64, count: usize) = |instance| {
+    fmi2GetEventIndicators(_: *mut fmi2Real, count: usize) = |instance| {
         instance.continuous(Call::GetEventIndicators, count)
     };
     /// `fmi2GetContinuousStates`: there are none.
-    fmi2GetContinuousStates(_: *mut f64, count: usize) = |instance| {
+    fmi2GetContinuousStates(_: *mut fmi2Real, count: usize) = |instance| {
         instance.continuous(Call::GetContinuousStates, count)
     };
     /// `fmi2GetNominalsOfContinuousStates`: there are no continuous states.
-    fmi2GetNominalsOfContinuousStates(_: *mut f64, count: usize) = |instance| {
+    fmi2GetNominalsOfContinuousStates(_: *mut fmi2Real, count: usize) = |instance| {
         instance.continuous(Call::GetNominalsOfContinuousStates, count)
     };
 }
