@@ -87,7 +87,7 @@ pub use forces::{
 pub use linear::PivotOrder;
 pub use origin::Origin;
 pub use path::{Curve, Path, Rates};
-pub use plan::{BlockChoices, CheckedSegment, Crossing, Polynomial};
+pub use plan::{BlockChoices, Crossing, Polynomial};
 pub use redundancy::Redundancy;
 pub use results::{Output, OutputSource, Solution, omitted_reactions};
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};

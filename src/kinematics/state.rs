@@ -319,7 +319,6 @@ impl State {
         for crossing in &pose.crossings {
             self.add_crossing(compiled, crossing);
         }
-        compiled.plan.forget_proofs();
     }
 
     /// Goes to a pose and restores the choices that were in use there. Returns false if the choices

@@ -347,24 +347,11 @@ impl Run<'_> {
     /// Predicts, corrects and certifies the end of a sub-step. The pose stays as it is; all that is
     /// derived from it goes to the end, or anywhere in case of a failure.
     fn try_step(&mut self, end: f64) -> Result<Correction, Failure> {
-        // Proofs that hold for several steps serve undivided steps: the division of a longer one
-        // depends on its own proofs alone.
-        let may_reuse = self.s <= 0.0 && end >= 1.0 && !self.drivers.parameters_move;
-        let mut reached = self.try_step_with(end, may_reuse);
-        if matches!(reached, Err(Failure::NotCertified)) && self.bounds.reused {
-            self.return_to_pose();
-            reached = self.try_step_with(end, false);
-        }
-        reached
-    }
-
-    /// Tries a sub-step with or without proofs that hold for several steps.
-    fn try_step_with(&mut self, end: f64, may_reuse: bool) -> Result<Correction, Failure> {
         self.set_values(end).map_err(Failure::Value)?;
         let part = [self.s, end];
         let CompiledMechanism { system, plan, .. } = &mut *self.compiled;
         let state = &mut *self.state;
-        self.bounds.begin(may_reuse);
+        self.bounds.begin();
         bound_drivers(system, state, self.drivers, self.path, part, self.bounds)
             .map_err(|jumping| jumping.map_or(Failure::NotCertified, Failure::Jump))?;
         let extrapolation = extrapolation(&self.drivers.here, end - self.s);

@@ -1,8 +1,6 @@
 //! Any block of equations that have to be solved together.
 
-mod certified_tube;
 mod certify;
-mod checked_segment;
 mod contraction;
 mod equations;
 mod estimate;
@@ -11,11 +9,10 @@ mod tests;
 
 use std::sync::Arc;
 
-use certified_tube::CertifiedTubes;
 use contraction::ContractionTest;
 use equations::{BlockEquations, ColumnOwner, Jacobian};
 
-use super::choices::{BlockChoices, CheckedSegment};
+use super::choices::BlockChoices;
 use super::elimination::EliminationOrder;
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
@@ -42,8 +39,6 @@ pub(in crate::kinematics) struct CoupledBlock {
     start_excess: f64,
     correction: Vec<f64>,
     test: Box<ContractionTest>,
-    tubes: CertifiedTubes,
-    segment: CheckedSegment,
     /// The markers of its bodies.
     markers: Vec<MarkerId>,
     /// Largest distance of a marker from its body's origin, divided by the size of the block's part
@@ -82,8 +77,6 @@ impl CoupledBlock {
             excess: 0.0,
             start_excess: 0.0,
             correction: vec![0.0; order],
-            tubes: CertifiedTubes::new(order + test.known.len()),
-            segment: CheckedSegment::new(order, test.known.len()),
             test,
             markers,
             length: 1.0,
@@ -153,7 +146,6 @@ impl SolveBlock for CoupledBlock {
         _targets: &Targets,
         _pivots: &mut Pivots,
     ) {
-        self.forget_proofs();
         self.equations.set_size(system, at);
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
         let longest = arms.fold(0.0, f64::max);
@@ -298,28 +290,15 @@ impl SolveBlock for CoupledBlock {
     fn copy_choices(&self, to: &mut BlockChoices) {
         self.jacobian.lu.copy_pivots(&mut to.pivots[0]);
         self.test.middle.lu.copy_pivots(&mut to.pivots[1]);
-        to.segment.clone_from(&self.segment);
     }
 
     fn take_choices(&mut self, from: &BlockChoices) -> bool {
-        let BlockChoices { pivots, segment } = from;
-        let fits = segment.start.len() == self.segment.start.len()
-            && segment.way.len() == self.segment.way.len()
-            && segment.leading < segment.way.len();
-        if fits {
-            self.segment.clone_from(segment);
-        }
-        let [own, middle] = pivots;
-        fits && self.jacobian.lu.use_pivots(own) && self.test.middle.lu.use_pivots(middle)
+        let [own, middle] = &from.pivots;
+        self.jacobian.lu.use_pivots(own) && self.test.middle.lu.use_pivots(middle)
     }
 
     fn forget_pivots(&mut self) {
         self.jacobian.lu.forget_pivots();
         self.test.forget_pivots();
-    }
-
-    fn forget_proofs(&mut self) {
-        self.tubes.forget();
-        self.segment.forget();
     }
 }

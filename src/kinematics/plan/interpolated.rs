@@ -203,8 +203,4 @@ impl SolveBlock for InterpolatedBlock {
     fn forget_pivots(&mut self) {
         self.block.forget_pivots();
     }
-
-    fn forget_proofs(&mut self) {
-        self.block.forget_proofs();
-    }
 }

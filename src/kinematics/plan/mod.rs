@@ -47,7 +47,7 @@ use super::system::{System, Targets};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::mechanism::Jet;
 
-pub use choices::{BlockChoices, CheckedSegment};
+pub use choices::BlockChoices;
 pub(super) use coupled::CoupledBlock;
 pub use crossing::{Crossing, Polynomial};
 pub(super) use crossing::{INNER, SEAM, divided_differences};
@@ -184,13 +184,6 @@ impl BlockPlan {
     pub(super) fn reset_pivots(&mut self, system: &System, at: &Configuration, targets: &Targets) {
         self.forget_pivots();
         self.choose_pivots(system, at, targets);
-    }
-
-    /// Forgets the proofs that hold for several steps.
-    pub(super) fn forget_proofs(&mut self) {
-        for block in &mut self.blocks {
-            block.forget_proofs();
-        }
     }
 
     /// Saves the choices of all blocks with sparse matrices. Allocates at the first call, and after

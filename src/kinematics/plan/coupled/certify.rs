@@ -96,12 +96,6 @@ impl CoupledBlock {
         state: &mut BlockState<'_>,
         step: &mut Step<'_>,
     ) -> Result<(), Rejected> {
-        let holds = step.bounds.may_reuse
-            && (self.certify_in_tubes(state, step) || self.certify_in_segment(state, step));
-        if holds {
-            self.write_bounds(state, step);
-            return Ok(());
-        }
         self.test.note_ends(state);
         let tried = if self.test.inverse.is_empty() {
             self.estimate_radii(state, step)
@@ -123,13 +117,6 @@ impl CoupledBlock {
             }
         };
         self.write_bounds(state, step);
-        if step.bounds.may_reuse {
-            if self.test.inverse.is_empty() {
-                self.lay_segment(state, step, contraction);
-            } else {
-                self.make_tube(state, step, contraction);
-            }
-        }
         step.bounds.require(step_ratio(contraction).min(1.0))
     }
 
@@ -140,7 +127,7 @@ impl CoupledBlock {
     }
 
     /// Clears the region and the chord in the work space.
-    pub(super) fn clear_region(&self, step: &mut Step<'_>) {
+    fn clear_region(&self, step: &mut Step<'_>) {
         for &column in self.equations.columns.iter().chain(&self.test.known) {
             step.bounds.region[column] = 0.0;
             step.bounds.chord[column] = 0.0;

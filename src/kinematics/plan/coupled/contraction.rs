@@ -5,7 +5,7 @@ use crate::kinematics::constraint::configuration::BodyPose;
 use crate::kinematics::linear::{Condition, Lu};
 use crate::kinematics::plan::elimination::EliminationOrder;
 use crate::kinematics::plan::step::BlockState;
-use crate::kinematics::system::{System, Target};
+use crate::kinematics::system::System;
 
 /// Most torn unknowns of a block whose inverse A is computed entry by entry.
 pub(super) const MOST_TORN: usize = 32;
@@ -24,8 +24,6 @@ pub(super) const STRICTLY: f64 = 0.999;
 pub(super) struct ContractionTest {
     /// Unknowns of earlier blocks in the rows.
     pub(super) known: Vec<usize>,
-    /// Drivers in the targets of the block's rows.
-    pub(super) drivers: Vec<usize>,
     /// Bodies with unknowns in the rows, and their frames at the end of the sub-step.
     bodies: Vec<usize>,
     ends: Vec<BodyPose>,
@@ -107,11 +105,6 @@ impl ContractionTest {
         bodies.sort_unstable();
         bodies.dedup();
         let joint_unknowns: Vec<_> = moving().filter(|&k| k >= of_bodies).collect();
-        let drivers = order.rows.iter();
-        let drivers = drivers.filter_map(|&row| match system.equations()[row].target {
-            Target::Driver(driver) => Some(driver.index()),
-            Target::Constant(_) => None,
-        });
         let (inverse, estimate) = if order.torn() <= MOST_TORN {
             (n * n, Estimate::default())
         } else {
@@ -125,7 +118,6 @@ impl ContractionTest {
         Self {
             known_radii: vec![0.0; known.len()],
             known,
-            drivers: drivers.collect(),
             ends: Vec::with_capacity(bodies.len()),
             bodies,
             joint_ends: vec![0.0; joint_unknowns.len()],

@@ -35,15 +35,6 @@ use crate::kinematics::tolerances::STALLED;
 /// Safety factor on estimates.
 const SAFETY: f64 = 2.0;
 
-/// The result of a test that was passed.
-pub(super) struct Passed {
-    /// r, and the radius of the motion around the chord, both scaled.
-    pub(super) radius: f64,
-    pub(super) next: f64,
-    /// The sum of c and the norm of K.
-    pub(super) contraction: f64,
-}
-
 impl CoupledBlock {
     /// Looks for a radius that passes the test and writes it to `next`. Returns the sum of c and
     /// the norm of K.
@@ -63,28 +54,7 @@ impl CoupledBlock {
         self.lay_chord(state, step);
         self.move_to_chord(state, step, 0.0);
         self.evaluate_rows(state);
-        let drift = self.drift();
-        let passed = self.test_chord(state, step, [drift, 0.0], LARGER_RADII)?;
-        self.test.next.fill(passed.next);
-        Ok(passed.contraction)
-    }
-
-    /// Tests the chord of `step` and moves the bodies to its middle. `drift` is the norm of A times
-    /// the change of the Jacobian at the far end of the chord. `astray` is a bound of the scaled
-    /// distance of that end from the motion. The first trial radius is `room` times the distance of
-    /// the chord from the motion.
-    ///
-    /// # Errors
-    ///
-    /// If the test fails, the sum of c and the norm of K, if they are known.
-    pub(super) fn test_chord(
-        &mut self,
-        state: &mut BlockState<'_>,
-        step: &mut Step<'_>,
-        [drift, astray]: [f64; 2],
-        room: f64,
-    ) -> Result<Passed, Option<f64>> {
-        let drift = SAFETY * drift;
+        let drift = SAFETY * self.drift();
         if drift.is_nan() {
             return Err(None);
         }
@@ -98,8 +68,8 @@ impl CoupledBlock {
             *slack += rounding + moved;
         }
         let larger = 1.0 / (1.0 - drift);
-        let gap = larger * SAFETY * (self.farthest() + astray);
-        let mut radius = room * gap + f64::EPSILON;
+        let gap = larger * SAFETY * self.farthest();
+        let mut radius = LARGER_RADII * gap + f64::EPSILON;
         let mut last = None;
         for _ in 0..MOST_TRIES {
             let [open, change] = self.bend_around(state, step, radius).ok_or(last)?;
@@ -109,11 +79,8 @@ impl CoupledBlock {
                 return Err(None);
             }
             if next <= STRICTLY * radius {
-                return Ok(Passed {
-                    radius,
-                    next,
-                    contraction,
-                });
+                self.test.next.fill(next);
+                return Ok(contraction);
             }
             if contraction >= LARGEST_CONTRACTION {
                 return Err(Some(contraction));
@@ -126,7 +93,7 @@ impl CoupledBlock {
 
     /// Evaluates the rows at the pose in `state` without touching the factors; bounds of their
     /// rounding go to `row`.
-    pub(super) fn evaluate_rows(&mut self, state: &BlockState<'_>) {
+    fn evaluate_rows(&mut self, state: &BlockState<'_>) {
         let Self {
             equations, test, ..
         } = self;
@@ -149,7 +116,7 @@ impl CoupledBlock {
     }
 
     /// Returns the norm of A times the change of the Jacobian where the rows were evaluated last.
-    pub(super) fn drift(&mut self) -> f64 {
+    fn drift(&mut self) -> f64 {
         let ContractionTest {
             condition,
             middle,
@@ -162,7 +129,7 @@ impl CoupledBlock {
     }
 
     /// Returns the largest component of A F where the rows were evaluated last.
-    pub(super) fn farthest(&mut self) -> f64 {
+    fn farthest(&mut self) -> f64 {
         let gap = &mut self.test.estimate.gap;
         self.jacobian.lu.solve(gap);
         gap.iter()
