@@ -76,7 +76,8 @@
 //! ```
 //!
 //! The package `biela-runtime` makes the shared library inside every FMU from this crate. It exports
-//! the functions of `fmi2Functions.h` and reads the mechanism from the FMU's resources.
+//! the functions of `fmi2Functions.h` and `fmi3Functions.h`, and reads the mechanism from the FMU's
+//! resources.
 
 #[cfg(feature = "cli")]
 pub mod cli;

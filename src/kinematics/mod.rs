@@ -27,6 +27,7 @@
 //!
 //! | file or folder | subject |
 //! |---|---|
+//! | `tolerances` | the tolerances that several files share |
 //! | `linear` | dense and sparse matrices, condition, rank |
 //! | `origin`, `error`, `alignment`, `newton` | names for messages; errors; lines that meet; limits of Newton–Raphson |
 //! | [`constraint`] | the bodies and markers at one q; one relation per file, with its derivatives |
@@ -67,6 +68,7 @@ mod solver;
 mod start;
 mod state;
 mod system;
+mod tolerances;
 
 pub use alignment::{Alignment, Member, Relation};
 pub use analysis::{
@@ -86,7 +88,7 @@ pub use forces::{
 pub use linear::PivotOrder;
 pub use origin::Origin;
 pub use path::{Curve, Path, Rates};
-pub use plan::{BlockChoices, CheckedSegment, Crossing, Polynomial};
+pub use plan::{BlockChoices, Crossing, Polynomial};
 pub use redundancy::Redundancy;
 pub use results::{Output, OutputSource, Solution, omitted_reactions};
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};

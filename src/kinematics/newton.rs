@@ -1,5 +1,7 @@
 //! Limits of Newton–Raphson on the position equations (Eq. 3.6.7 and 3.6.8), and its outcome.
 
+use crate::kinematics::tolerances::AT_ROUNDING;
+
 /// The outcome of a correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::kinematics) struct Correction {
@@ -23,12 +25,6 @@ impl Default for Correction {
 /// A correction without a pose, or with one that may be off the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::kinematics) struct Rejected;
-
-/// A residual up to this many times its estimated rounding error counts as zero.
-pub(in crate::kinematics) const AT_ROUNDING: f64 = 4.0;
-/// A residual up to this many times its rounding error that has stopped falling counts as zero,
-/// too: the estimate of the rounding leaves out the sums and products inside a row.
-pub(in crate::kinematics) const STALLED: f64 = 100.0;
 
 /// Limits of Newton–Raphson.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +52,3 @@ impl Limits {
         ..Self::STEP
     };
 }
-
-/// A reciprocal condition below this belongs to a singular position: there Newton–Raphson ends
-/// within the square root of the machine's rounding, and rates mean nothing.
-pub(in crate::kinematics) const SINGULAR: f64 = 1e-7;

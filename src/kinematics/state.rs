@@ -60,8 +60,8 @@ impl Pose {
     }
 }
 
-/// The effects of earlier motion on further results, apart from the pose: choices that hold until
-/// they are no longer fit. They decide about the last bits only.
+/// Choices of a solver that its pose does not determine. A choice is kept until it is no longer
+/// fit, so that earlier motion has an effect on later results, in their last bits only.
 #[derive(Debug, Default, PartialEq)]
 pub struct SolverChoices {
     /// The rows set aside as redundant, ascending.
@@ -95,8 +95,8 @@ pub(super) struct State {
     pub(super) targets: Targets,
     /// The prescribed motions with the parameters in force.
     pub(super) motions: Motions,
-    /// Rates of q: with a single driver the derivatives in its value, from which all others
-    /// follow; otherwise those along a path.
+    /// Rates of q. With a single driver they are derivatives with respect to its value, from which
+    /// all other rates follow; otherwise they are derivatives along a path.
     pub(super) tangent: Rates,
     /// The least regularity of all blocks, which are factorised at the pose.
     pub(super) regularity: f64,
@@ -289,8 +289,9 @@ impl State {
         self.factorised = false;
     }
 
-    /// Sets these redundant rows aside; if others were, the pose loses its crossings. Returns false if
-    /// they are of another mechanism; the rows set aside are then as before.
+    /// Sets these redundant rows aside. If other rows were set aside before, removes the crossings
+    /// from the pose. Returns false if the rows are of another mechanism; the rows set aside then
+    /// stay.
     pub(super) fn set_aside(&mut self, compiled: &mut CompiledMechanism, rows: &[usize]) -> bool {
         if compiled.redundant.now == rows {
             return true;
@@ -303,7 +304,8 @@ impl State {
         fits
     }
 
-    /// Goes to a pose that this mechanism was at. The rows in use there come back with its crossings.
+    /// Goes to a pose that this mechanism was at. If the pose has crossings, sets aside the rows
+    /// that they require.
     pub(super) fn restore(&mut self, compiled: &mut CompiledMechanism, pose: &Pose) {
         self.has_parameters &= self.pose.parameters == pose.parameters;
         self.release_crossings(compiled);
@@ -317,11 +319,10 @@ impl State {
         for crossing in &pose.crossings {
             self.add_crossing(compiled, crossing);
         }
-        compiled.plan.forget_proofs();
     }
 
-    /// Goes to a pose with the choices that were in use there. Returns false if these are of
-    /// another mechanism; the choices in use are then any.
+    /// Goes to a pose and restores the choices that were in use there. Returns false if the choices
+    /// are of another mechanism; row choice and pivots are then unspecified.
     pub(super) fn resume(
         &mut self,
         compiled: &mut CompiledMechanism,
@@ -335,7 +336,7 @@ impl State {
         compiled.plan.take_choices(&choices.blocks)
     }
 
-    /// Lets the unknowns of a block come from a crossing, which becomes one of the pose.
+    /// Adds a crossing to the pose; it gives the unknowns of its block from now on.
     pub(super) fn add_crossing(
         &mut self,
         compiled: &mut CompiledMechanism,
@@ -384,8 +385,8 @@ impl State {
         }
     }
 
-    /// Returns the ratio of the extreme singular values of these rows of the Jacobian in these
-    /// unknowns, which are ascending, at the present places of the bodies.
+    /// Returns the ratio of the least to the largest singular value of a part of the Jacobian at
+    /// the present places of the bodies: these rows and columns, the columns ascending.
     pub(super) fn dense_rcond(&self, system: &System, rows: &[usize], columns: &[usize]) -> f64 {
         let place = |column: usize| columns.binary_search(&column).ok();
         let (_, jacobian) = system.dense_rows(rows, columns.len(), place, self.values());
@@ -398,8 +399,8 @@ impl State {
         system.largest_residual(&self.at, &self.targets, &self.pose.drivers)
     }
 
-    /// Returns the scaled reciprocal condition at the pose, of the block nearest to a singular
-    /// position; zero where it is singular.
+    /// Returns the smallest scaled reciprocal condition of a block at the pose; zero in a singular
+    /// position.
     pub(super) fn rcond(&mut self, compiled: &mut CompiledMechanism) -> f64 {
         match self.refresh(compiled) {
             Ok(()) => compiled.plan.rcond(),

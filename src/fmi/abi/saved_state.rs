@@ -32,13 +32,12 @@ pub(super) fn hand_over(state: FmuState) -> Handle {
 /// deserialize a state.
 macro_rules! fmu_state_calls {
     (
-        $byte:ty;
+        $state:ty, $byte:ty;
         $get:ident $set:ident $free:ident $size:ident $serialize:ident $deserialize:ident
     ) => {
         use std::ptr::null_mut;
 
         use $crate::fmi::abi::arguments::{fill, room, slice, write};
-        use $crate::fmi::abi::component::Handle;
         use $crate::fmi::abi::saved_state::{ARGUMENT, FmuState, hand_over, state};
         use $crate::fmi::{Call, Error, StateError};
 
@@ -46,7 +45,7 @@ macro_rules! fmu_state_calls {
             #[doc = concat!("`", stringify!($get), "`: makes a copy of the state, or puts it in place of one")]
             /// that the host hands over for that: `*fmu_state` holds a value, other than in functions that
             /// write only.
-            $get(fmu_state: *mut Handle) = |instance| {
+            $get(fmu_state: *mut $state) = |instance| {
                 let handle = slice(ARGUMENT, fmu_state, 1)?[0];
                 let state = instance.fmu_state()?;
                 match handle.cast::<FmuState>().as_mut() {
@@ -56,9 +55,9 @@ macro_rules! fmu_state_calls {
                 Ok(())
             };
             #[doc = concat!("`", stringify!($set), "`.")]
-            $set(fmu_state: Handle) = |instance| instance.set_fmu_state(state(fmu_state)?);
+            $set(fmu_state: $state) = |instance| instance.set_fmu_state(state(fmu_state)?);
             #[doc = concat!("`", stringify!($free), "`; nothing happens for null, either way.")]
-            $free(fmu_state: *mut Handle) = |instance| {
+            $free(fmu_state: *mut $state) = |instance| {
                 instance.allow(Call::FreeFMUstate)?;
                 if fmu_state.is_null() {
                     return Ok(());
@@ -71,13 +70,13 @@ macro_rules! fmu_state_calls {
                 Ok(())
             };
             #[doc = concat!("`", stringify!($size), "`.")]
-            $size(fmu_state: Handle, size: *mut usize) = |instance| {
+            $size(fmu_state: $state, size: *mut usize) = |instance| {
                 let bytes = instance.serialized_fmu_state_size(state(fmu_state)?)?;
                 write("size", size, bytes)
             };
             // A byte of a standard is one of Rust, perhaps with another sign.
             #[doc = concat!("`", stringify!($serialize), "`.")]
-            $serialize(fmu_state: Handle, serialized_state: *mut $byte, size: usize) = |instance| {
+            $serialize(fmu_state: $state, serialized_state: *mut $byte, size: usize) = |instance| {
                 let bytes = instance.serialize_fmu_state(state(fmu_state)?)?;
                 let room = room("serializedState", serialized_state.cast(), size)?;
                 // With more room the host would hand back more than was written.
@@ -92,7 +91,7 @@ macro_rules! fmu_state_calls {
             $deserialize(
                 serialized_state: *const $byte,
                 size: usize,
-                fmu_state: *mut Handle,
+                fmu_state: *mut $state,
             ) = |instance| {
                 let bytes = slice("serializedState", serialized_state.cast(), size)?;
                 let room = room(ARGUMENT, fmu_state, 1)?;

@@ -10,7 +10,7 @@ use crate::fmi::model::{Groups, Model};
 use crate::fmi::state::{Call, State, Version};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable, place};
 
-/// Groups of a variable that is no Real: a bit that no model uses, as it is the last one.
+/// Group of all variables that are not Real: the top bit, reserved, so that no model uses it.
 const NO_REAL: Groups = 1 << (Groups::BITS - 1);
 
 /// Returns the groups of a variable's value.

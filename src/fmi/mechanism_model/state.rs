@@ -9,8 +9,8 @@ use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
 use crate::kinematics::{
-    Alignment, BlockChoices, CheckedSegment, Crossing, Member, Origin, PivotOrder, Polynomial,
-    Pose, Progress, Relation, SolverChoices,
+    Alignment, BlockChoices, Crossing, Member, Origin, PivotOrder, Polynomial, Pose, Progress,
+    Relation, SolverChoices,
 };
 use crate::mechanism::{BodyId, DriverId, Extrapolation, Jet, RateSource};
 
@@ -235,28 +235,11 @@ fn visit_choices(
     let SolverChoices { set_aside, blocks } = choices;
     visit_indices(set_aside, rows, codec)?;
     codec.resize(blocks, unknowns, BlockChoices::default)?;
-    for BlockChoices { pivots, segment } in blocks {
+    for BlockChoices { pivots } in blocks {
         for PivotOrder { rows, columns } in pivots {
             visit_indices(rows, unknowns, codec)?;
             visit_indices(columns, unknowns, codec)?;
         }
-        let CheckedSegment {
-            holds,
-            start,
-            way,
-            leading,
-            radius,
-            off,
-            off_single,
-            driver_deviation,
-        } = segment;
-        codec.flag(holds)?;
-        codec.index(leading)?;
-        for list in [&mut *start, &mut *way] {
-            codec.resize(list, unknowns, || 0.0)?;
-        }
-        let numbers = [radius, off, off_single, driver_deviation];
-        codec.each(start.iter_mut().chain(way).chain(numbers), Codec::real)?;
     }
     Ok(())
 }

@@ -38,11 +38,11 @@ pub struct Mode {
 }
 
 /// Starting points anywhere for a block without a complete list of branches.
-const STARTS: usize = 60;
+const STARTS_ANYWHERE: usize = 60;
 /// Most modes that are listed: independent blocks multiply theirs.
 const MOST_MODES: usize = 64;
 /// Most work of the search; see [`BranchSearch`].
-const MOST_WORK: f64 = 20_000.0;
+const WORK_OF_MODES: f64 = 20_000.0;
 
 /// Finds the other assembly modes for the parameters and driver values of the pose. See
 /// [`Solver::modes`](crate::kinematics::Solver::modes).
@@ -57,7 +57,7 @@ pub(in crate::kinematics) fn modes(
     let estimate = estimate(&compiled.system, &state.pose.parameters)?;
     let home = state.pose.clone();
     state.release_crossings(compiled);
-    let effort = SearchEffort::Anywhere(STARTS);
+    let effort = SearchEffort::Anywhere(STARTS_ANYWHERE);
     let Closed {
         poses,
         starts,
@@ -118,7 +118,7 @@ fn close_all(
     estimate: &[f64],
     effort: SearchEffort,
 ) -> Closed {
-    let mut search = BranchSearch::new(compiled, state, estimate, effort, MOST_WORK);
+    let mut search = BranchSearch::new(compiled, state, estimate, effort, WORK_OF_MODES);
     let mut found = Vec::new();
     while found.len() < MOST_MODES && search.next() {
         found.push(search.pose());

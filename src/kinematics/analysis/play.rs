@@ -31,7 +31,7 @@ pub struct Play {
 const POSES: usize = 180;
 /// Largest scaled residual of a row that counts as closed: the weight of the open one leaves the
 /// others some 1e-8 of its gap, times the leverage of their links.
-const CLOSED: f64 = 1e-7;
+const HELD_CLOSED: f64 = 1e-7;
 
 impl Play {
     /// Moves a mechanism whose constraints contradict each other from its start values over the
@@ -155,7 +155,7 @@ impl Sweep<'_> {
         let mut others = (0..system.equations().len()).filter(|row| !self.own.contains(row));
         others.all(|row| {
             let value = system.evaluate_row(row, self.state.values(), |_, _| {});
-            value.value.abs() <= CLOSED
+            value.value.abs() <= HELD_CLOSED
         })
     }
 

@@ -1,4 +1,4 @@
-//! Closing a mechanism as a whole on some rows, which may be more than enough, or too few.
+//! Closing a mechanism as a whole on given rows, however many there are.
 
 use super::least_squares::LeastSquares;
 use super::part::{SMALL_PART, STARTS};
@@ -10,9 +10,9 @@ pub(in crate::kinematics) fn is_small(system: &System) -> bool {
     system.unknowns() <= SMALL_PART
 }
 
-/// Closes the mechanism on these rows from the estimates, or from starts near them. Returns `None`
-/// if they are satisfied, otherwise the largest scaled residual of the nearest pose found, where
-/// the bodies then are.
+/// Closes the mechanism on these rows, from the estimates or from starts near them. Returns `None`
+/// if they are satisfied; otherwise moves the bodies to the nearest pose found and returns its
+/// largest scaled residual.
 pub(in crate::kinematics) fn close_on(
     system: &System,
     state: &mut State,

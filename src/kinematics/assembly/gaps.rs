@@ -58,12 +58,13 @@ pub(in crate::kinematics) fn open_joints(
 
 /// Most minimisation steps towards the nearest pose of a mechanism that does not close.
 pub(in crate::kinematics) const STEPS_TO_NEAREST: usize = 200;
-/// Weight of all other rows when the gap is gathered in one origin: they stay open by some 1e-8 of
-/// the gap, below the digits of a message.
+/// Weight of all other rows when least squares concentrates the gap in one origin. The other rows
+/// stay open by about 1e-8 of the gap, below the digits of a message.
 const HOLD_CLOSED: f64 = 1e4;
 
-/// Gathers the gap of some rows in one origin: a minimum spreads it over all joints of a loop, but
-/// people look for one joint that does not meet. Returns the largest scaled residual.
+/// Concentrates the gap of some rows in one origin: unweighted least squares spreads it over all
+/// joints of a loop, but people look for one joint that is open. Returns the largest scaled
+/// residual.
 pub(in crate::kinematics) fn gather(
     compiled: &CompiledMechanism,
     state: &mut State,

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use crate::kinematics::constraint::{Gradient, Region, Relation, TurnEffect};
 use crate::kinematics::linear::{Factors, Row, SparseLu, nan_or_larger};
-use crate::kinematics::newton::{AT_ROUNDING, STALLED};
 use crate::kinematics::plan::BlockState;
 use crate::kinematics::system::{RowValue, System};
+use crate::kinematics::tolerances::{AT_ROUNDING, STALLED};
 
 /// A scaled residual beyond its rounding up to this one holds: it is five digits above the one that
 /// Newton–Raphson leaves in rows that are well conditioned, and less than anyone could measure.

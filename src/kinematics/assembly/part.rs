@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::least_squares::{LeastSquares, Pull};
 use crate::kinematics::constraint::{Gradient, Relation};
+use crate::kinematics::linear::spread;
 use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::plan::{BlockState, SolveBlock};
 use crate::kinematics::system::System;
@@ -21,7 +22,7 @@ const STEPS_FROM_ANYWHERE: usize = 40;
 /// Points nearer than this part of the size of their part of the mechanism coincide.
 const TOUCHING: f64 = 1e-6;
 /// Unknowns that differ by less than this, scaled, are the same.
-const SAME: f64 = 1e-6;
+const SAME_UNKNOWN: f64 = 1e-6;
 /// Most unknowns of a part that is minimised from several starts.
 pub(in crate::kinematics) const SMALL_PART: usize = 120;
 /// Most unknowns of a part that is minimised at all.
@@ -228,7 +229,7 @@ pub(in crate::kinematics) fn is_same(
     a: f64,
     b: f64,
 ) -> bool {
-    system.difference(column, size, a, b).abs() < SAME
+    system.difference(column, size, a, b).abs() < SAME_UNKNOWN
 }
 
 /// Returns a number from 0 to 1 for attempt and coordinate, uniformly distributed as if at random
@@ -241,12 +242,11 @@ fn scattered(attempt: usize, column: usize) -> f64 {
 }
 
 /// Returns the distance of a start from the estimate of coordinate k, scaled: zero at first, then
-/// up to half a length or radian, spread evenly by the golden ratio.
+/// up to half a length or radian.
 fn shift(attempt: usize, k: usize) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
     if attempt == 0 {
         0.0
     } else {
-        (GOLDEN * (attempt * (k + 1)) as f64).fract() - 0.5
+        spread(attempt * (k + 1)) - 0.5
     }
 }

@@ -16,7 +16,7 @@ use crate::kinematics::state::State;
 const WELL_CONDITIONED: f64 = 1e-5;
 /// Most work on further branches once a block has not closed. A start of a block in closed form
 /// counts one; this takes well under a second.
-const MOST_WORK: f64 = 2_000.0;
+const WORK_OF_SEARCH: f64 = 2_000.0;
 /// Number of unknowns of a block whose minimisation from one start counts one.
 const UNIT_OF_WORK: f64 = 9.0;
 /// Number of terms of bounds over intervals that count one.
@@ -94,11 +94,23 @@ pub(in crate::kinematics) fn search(
     state: &mut State,
     estimate: &[f64],
 ) -> Result<u32, NoBranch> {
-    let mut search = BranchSearch::new(compiled, state, estimate, SearchEffort::Near, MOST_WORK);
+    let mut search = BranchSearch::new(
+        compiled,
+        state,
+        estimate,
+        SearchEffort::Near,
+        WORK_OF_SEARCH,
+    );
     let mut found = search.next();
     if !found && search.leaves_out {
         state.at.set_pose(compiled.system.mechanism(), estimate);
-        search = BranchSearch::new(compiled, state, estimate, SearchEffort::AnyTurn, MOST_WORK);
+        search = BranchSearch::new(
+            compiled,
+            state,
+            estimate,
+            SearchEffort::AnyTurn,
+            WORK_OF_SEARCH,
+        );
         found = search.next();
     }
     if !found {

@@ -8,7 +8,7 @@ use crate::kinematics::system::System;
 
 /// Largest scaled change of a row that is rounding when all its bodies turn once: some eps of a
 /// million turns.
-const ROUNDING: f64 = 1e-9;
+const TURN_ROUNDING: f64 = 1e-9;
 
 /// Fixes the whole turns of the angle rows: those nearest the present places of the bodies.
 pub(super) fn fix_turns(system: &System, state: &mut State) {
@@ -46,7 +46,7 @@ pub(in crate::kinematics) fn choose_turns(system: &System, state: &mut State, es
             constraint.value(&state.at)
         };
         let changed = turn(state, TAU) - turn(state, 0.0);
-        if changed.abs() * equation.row_scale(&state.at) > ROUNDING {
+        if changed.abs() * equation.row_scale(&state.at) > TURN_ROUNDING {
             tied.push(ground);
         }
         for body in &mut tied {

@@ -87,20 +87,14 @@ pub(super) struct StepBounds {
     step_ratio: f64,
     /// Whether some bound was an estimate.
     pub(super) checked: bool,
-    /// Whether blocks may use and make proofs that hold for several steps.
-    pub(super) may_reuse: bool,
-    /// Whether a block used such a proof.
-    pub(super) reused: bool,
     /// Work space of [`Region`](super::constraint::Region)s: radius and chord of each unknown,
     /// zero between uses.
     pub(super) region: Vec<f64>,
     pub(super) chord: Vec<f64>,
-    /// Largest deviation of each unknown from its chord in a step that a tube of its block serves.
-    pub(super) tube_radii: Vec<f64>,
 }
 
 /// A test is accepted up to this part of the largest step that it allows.
-const MARGIN: f64 = 0.9;
+const ACCEPTED: f64 = 0.9;
 
 impl Pivots {
     /// Returns the pivots of no body.
@@ -141,21 +135,16 @@ impl StepBounds {
             parameters: ParameterBounds::new(system),
             step_ratio: 0.0,
             checked: false,
-            may_reuse: false,
-            reused: false,
             region: vec![0.0; unknowns],
             chord: vec![0.0; unknowns],
-            tube_radii: vec![0.0; unknowns],
         }
     }
 
-    /// Begins a sub-step; `may_reuse` allows proofs that hold for several steps.
-    pub(super) fn begin(&mut self, may_reuse: bool) {
+    /// Begins a sub-step.
+    pub(super) fn begin(&mut self) {
         self.number += 1;
         self.step_ratio = 0.0;
         self.checked = false;
-        self.may_reuse = may_reuse;
-        self.reused = false;
     }
 
     /// Returns the bounds of the numbers in the equations; `None` while no parameter moves.
@@ -299,7 +288,7 @@ impl Gap {
     /// 1 + 0.6 q up to q = 0.9; the step ratio is never less than q / 0.9.
     #[inline(always)]
     pub(super) fn new(open: f64, linear: f64, square: f64) -> Self {
-        let step_ratio = (4.0 * open * square + 2.0 * linear) * (1.0 / MARGIN);
+        let step_ratio = (4.0 * open * square + 2.0 * linear) * (1.0 / ACCEPTED);
         Self {
             step_ratio,
             value: open * (1.0 + 0.6 * step_ratio) / (1.0 - linear),

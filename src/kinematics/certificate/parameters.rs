@@ -19,6 +19,7 @@ use crate::kinematics::constraint::moving_configuration::{
 use crate::kinematics::constraint::{Dimension, partial};
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{Equation, System, Target, Targets};
+use crate::kinematics::tolerances::SMALLEST_SUBSTEP;
 use crate::mechanism::{
     DriverId, Expression, Interval, Marker, MarkerId, Mechanism, MotionInForce, MovingProfile,
     Number, ParameterId,
@@ -27,12 +28,9 @@ use crate::mechanism::{
 /// Largest deviation of a number or a prescribed motion that is not known to be continuous, in
 /// radians and characteristic lengths; a motion that jumps by more is refused where it jumps.
 pub(in crate::kinematics) const LARGEST_JUMP: f64 = 0.1;
-/// A path is blocked where a sub-step of this part of it, or of less than twice as much, is
-/// rejected.
-pub(in crate::kinematics) const SMALLEST_SUBSTEP: f64 = 1e-12;
 /// Part of a path in which a number that is not known to be continuous counts as lying between its
-/// values at both ends.
-const NARROW: f64 = 2.0 * SMALLEST_SUBSTEP;
+/// values at both ends: the smallest sub-steps are less than twice [`SMALLEST_SUBSTEP`].
+const PASSED_AT_ONCE: f64 = 2.0 * SMALLEST_SUBSTEP;
 
 /// Bounds of the numbers in the equations over a sub-step.
 #[derive(Debug, Default)]
@@ -184,7 +182,7 @@ fn between_ends(
     [start, end]: [f64; 2],
     ends: impl FnOnce() -> [f64; 2],
 ) -> Enclosed {
-    if end - start > NARROW || number.first().is_finite() {
+    if end - start > PASSED_AT_ONCE || number.first().is_finite() {
         return number;
     }
     let [from, to] = ends().map(Enclosed::constant);

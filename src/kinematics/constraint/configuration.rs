@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use crate::kinematics::Error;
+use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism, ProfileInForce};
 
 /// Returns a vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
@@ -367,15 +368,11 @@ impl Configuration {
 
     /// Makes the [size](Self::size) at least a length that a joint holds, unless it is rounding.
     pub(in crate::kinematics) fn enlarge(&mut self, length: f64) {
-        if length > ROUNDING {
+        if length > NEGLIGIBLE_LENGTH {
             self.size = self.size.max(length);
         }
     }
 }
-
-/// Lengths up to this one count as rounding \[m\]; between places farther than 1 m from their
-/// origin, lengths up to this part of that distance.
-pub(in crate::kinematics) const ROUNDING: f64 = 1e-13;
 
 /// Returns the diagonal of the box around places; zero if rounding alone tells them apart, and
 /// without any finite place.
@@ -386,7 +383,7 @@ pub(in crate::kinematics) fn extent(places: impl Iterator<Item = Vector2<f64>>) 
     }
     let diagonal = f64::hypot(high.x - low.x, high.y - low.y);
     let farthest = low.abs().sup(&high.abs()).max();
-    if diagonal.is_finite() && diagonal > ROUNDING * farthest.max(1.0) {
+    if diagonal.is_finite() && diagonal > NEGLIGIBLE_LENGTH * farthest.max(1.0) {
         diagonal
     } else {
         0.0

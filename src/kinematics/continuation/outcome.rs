@@ -4,6 +4,7 @@ use crate::kinematics::Error;
 use crate::kinematics::error::OpenJoint;
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::Pose;
+use crate::kinematics::tolerances::SAME_PLACE_ON_PATH;
 use crate::mechanism::{DriverId, Mechanism, fixed};
 
 /// The cause of a stop before the end of a path.
@@ -71,17 +72,13 @@ pub struct Blocked {
     pub progress: Progress,
 }
 
-/// Most of the path between the place reached and a singular position that stops the motion there:
-/// the tracker stops nearer.
-const AT_THE_END: f64 = 1e-9;
-
 impl Blocked {
     /// Returns the place on the path at which the motion ends: that of the singular position in
     /// front of which it has stopped, which is known to rounding, otherwise the place reached.
     #[must_use]
     pub fn place(&self) -> f64 {
         match &self.reason {
-            Reason::Singular(point) if (point.s - self.s).abs() <= AT_THE_END => {
+            Reason::Singular(point) if (point.s - self.s).abs() <= SAME_PLACE_ON_PATH => {
                 point.s.clamp(0.0, 1.0)
             }
             _ => self.s,

@@ -24,15 +24,12 @@ use crate::kinematics::singular::{
 };
 use crate::kinematics::state::{State, UNIT_RATE};
 use crate::kinematics::system::System;
+use crate::kinematics::tolerances::SAME_PLACE_ON_PATH;
 use crate::mechanism::{DriverId, Jet};
 
 /// A motion that stops while a driver still moves by more than this per sub-step \[m or rad\] asks
 /// for too long a path.
 const LARGEST_LAST_MOVE: f64 = 1e-6;
-/// An invalid value within this part of the path ahead is reported as the cause of a stop.
-const JUST_AHEAD: f64 = 1e-9;
-/// Places of singular positions on the path that differ by less are the same.
-const ONE_PLACE: f64 = 1e-9;
 
 /// The storage for tracking paths.
 #[derive(Debug)]
@@ -312,7 +309,7 @@ impl Run<'_> {
         let end = end.filter(|end| self.s < end.s && end.s <= 1.0);
         let expected = std::mem::replace(&mut self.expected, end.as_ref().map(|end| end.s));
         let is_known = |end: &SingularPoint| {
-            expected.is_some_and(|expected| (end.s - expected).abs() <= ONE_PLACE)
+            expected.is_some_and(|expected| (end.s - expected).abs() <= SAME_PLACE_ON_PATH)
         };
         match (verdict, end) {
             (Verdict::Exhausted, None) => Err(Reason::NearSingular),
@@ -350,24 +347,11 @@ impl Run<'_> {
     /// Predicts, corrects and certifies the end of a sub-step. The pose stays as it is; all that is
     /// derived from it goes to the end, or anywhere in case of a failure.
     fn try_step(&mut self, end: f64) -> Result<Correction, Failure> {
-        // Proofs that hold for several steps serve undivided steps: the division of a longer one
-        // depends on its own proofs alone.
-        let may_reuse = self.s <= 0.0 && end >= 1.0 && !self.drivers.parameters_move;
-        let mut reached = self.try_step_with(end, may_reuse);
-        if matches!(reached, Err(Failure::NotCertified)) && self.bounds.reused {
-            self.return_to_pose();
-            reached = self.try_step_with(end, false);
-        }
-        reached
-    }
-
-    /// Tries a sub-step with or without proofs that hold for several steps.
-    fn try_step_with(&mut self, end: f64, may_reuse: bool) -> Result<Correction, Failure> {
         self.set_values(end).map_err(Failure::Value)?;
         let part = [self.s, end];
         let CompiledMechanism { system, plan, .. } = &mut *self.compiled;
         let state = &mut *self.state;
-        self.bounds.begin(may_reuse);
+        self.bounds.begin();
         bound_drivers(system, state, self.drivers, self.path, part, self.bounds)
             .map_err(|jumping| jumping.map_or(Failure::NotCertified, Failure::Jump))?;
         let extrapolation = extrapolation(&self.drivers.here, end - self.s);
@@ -534,7 +518,7 @@ impl Run<'_> {
             return Reason::Singular(end);
         }
         // Sub-steps may become ever shorter in front of an invalid value.
-        let ahead = self.set_values((self.s + JUST_AHEAD).min(1.0));
+        let ahead = self.set_values((self.s + SAME_PLACE_ON_PATH).min(1.0));
         self.return_to_pose();
         if let Err(error) = ahead {
             return Reason::Value(error);

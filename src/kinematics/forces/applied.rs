@@ -105,10 +105,10 @@ pub(super) fn on_body(
 fn distance_rounding(coordinate: &Coordinate, at: &Configuration) -> f64 {
     /// Roundings of a point: its body's origin and angle, which Newton–Raphson leaves with two or
     /// three, the sine and cosine, and the sum.
-    const ROUNDINGS: f64 = 8.0;
+    const POINT_ROUNDINGS: f64 = 8.0;
     let markers = [coordinate.from, coordinate.to].map(|marker| at.marker(marker));
     let sizes = markers.map(|marker| marker.point.norm() + marker.arm.norm());
-    ROUNDINGS * f64::EPSILON * (sizes[0] + sizes[1])
+    POINT_ROUNDINGS * f64::EPSILON * (sizes[0] + sizes[1])
 }
 
 impl AppliedForces {

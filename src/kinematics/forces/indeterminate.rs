@@ -11,15 +11,14 @@ use crate::kinematics::linear::Echelon;
 use crate::kinematics::origin::Origin;
 use crate::kinematics::path::{Curve, Path};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
-use crate::kinematics::redundancy::{DEPENDENT, drivers_first, jacobian_rows};
+use crate::kinematics::redundancy::{drivers_first, jacobian_rows};
 use crate::kinematics::state::State;
+use crate::kinematics::tolerances::{DEPENDENT, LEAST_COEFFICIENT};
 use crate::mechanism::DriverId;
 
 /// Distances of the other poses \[rad, characteristic lengths\] at which self-stresses are sought:
 /// a reaction may have no part in one at a single pose.
-const AWAY: [f64; 4] = [0.03, -0.03, 0.11, -0.11];
-/// A part of the largest λ of a self-stress that is not rounding.
-const TAKES_PART: f64 = 1e-6;
+const OTHER_POSES: [f64; 4] = [0.03, -0.03, 0.11, -0.11];
 
 /// Returns the joints and constraints whose reactions are indeterminate, at poses near the present
 /// one, which is restored.
@@ -33,7 +32,7 @@ pub(in crate::kinematics) fn indeterminate(
     }
     let home = state.pose.clone();
     let mut stressed = vec![self_stressed(compiled, state)];
-    for away in AWAY {
+    for away in OTHER_POSES {
         let mechanism = compiled.system.mechanism();
         let mut path = Path::new(mechanism);
         home.set_path(&mut path);
@@ -70,7 +69,7 @@ fn self_stressed(compiled: &CompiledMechanism, state: &State) -> (usize, BTreeSe
         };
         count += 1;
         // The row itself has the part one.
-        let combination = echelon.combination(&dependent, TAKES_PART);
+        let combination = echelon.combination(&dependent, LEAST_COEFFICIENT);
         let others = combination.iter().map(|(row, _)| *row);
         let is_held = |origin: &Origin| !matches!(origin, Origin::Driver(_));
         let stressed = others.chain([row]).map(|row| equations[row].origin);

@@ -80,9 +80,9 @@ impl<N: Number> Masses<N> {
 }
 
 impl Masses<f64> {
-    /// Turns the bodies and adds what they demand to w, and their energies. `coasting` are the
-    /// accelerations without those of inputs: with them w gives the bias of each driver. Then come
-    /// the accelerations of inputs: with them w gives the efforts.
+    /// Turns the bodies, adds M q̈ − Q_v to w (`demand`), and adds their energies. `coasting` holds
+    /// q̈ without the accelerations of inputs. The bias of each driver is the power of w for
+    /// `coasting`; w then also receives the accelerations of inputs, and gives the efforts.
     // Inlined, the sums of a single driver stay in registers.
     #[inline(always)]
     pub(super) fn load(

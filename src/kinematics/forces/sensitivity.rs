@@ -157,7 +157,7 @@ impl Forces {
         let mut loads = Loads::new(motion.inputs, &self.results.demand);
         // Numbers that are zero are rounding of the loads: with one more number, a part of these as far
         // as the bodies turn, they do not compare with rounding.
-        const ROUNDING: f64 = 1e-3;
+        const PART_OF_LOADS: f64 = 1e-3;
         let found = point.interpolate(
             compiled,
             state,
@@ -167,7 +167,7 @@ impl Forces {
                 let motion = loads.motion(place);
                 let along = self.solved_sensitivity(compiled, state, motion, direction, inputs)?;
                 values.extend(along.values);
-                values.push(ROUNDING * loads.natural() * along.change);
+                values.push(PART_OF_LOADS * loads.natural() * along.change);
                 Ok(())
             },
         );

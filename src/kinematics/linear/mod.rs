@@ -11,6 +11,7 @@ mod factors;
 mod lu;
 mod norm;
 mod sparse;
+mod spread;
 
 pub(super) use condition::Condition;
 pub(super) use dense::{DenseLu, dot, subtract};
@@ -20,3 +21,4 @@ pub(super) use lu::Lu;
 pub(super) use norm::nan_or_larger;
 pub use sparse::PivotOrder;
 pub(super) use sparse::SparseLu;
+pub(super) use spread::spread;

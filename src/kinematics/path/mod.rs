@@ -4,6 +4,7 @@ mod drivers;
 mod motions;
 mod rates;
 
+use crate::kinematics::tolerances::SAME_PLACE_ON_PATH;
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 
 pub(super) use drivers::PathDrivers;
@@ -115,8 +116,8 @@ impl Path {
         if self.duration <= 0.0 {
             return 1.0;
         }
-        // A point within this distance is reached up to rounding.
-        let after = self.time(s + 1e-9);
+        // A nearer point has been reached.
+        let after = self.time(s + SAME_PLACE_ON_PATH);
         ((motions.next_point(after) - self.start) / self.duration).min(1.0)
     }
 

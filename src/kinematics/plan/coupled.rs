@@ -1,8 +1,6 @@
 //! Any block of equations that have to be solved together.
 
-mod certified_tube;
 mod certify;
-mod checked_segment;
 mod contraction;
 mod equations;
 mod estimate;
@@ -11,19 +9,19 @@ mod tests;
 
 use std::sync::Arc;
 
-use certified_tube::CertifiedTubes;
 use contraction::ContractionTest;
 use equations::{BlockEquations, ColumnOwner, Jacobian};
 
-use super::choices::{BlockChoices, CheckedSegment};
+use super::choices::BlockChoices;
 use super::elimination::EliminationOrder;
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
-use crate::kinematics::constraint::configuration::{Configuration, ROUNDING};
+use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::linear::{Condition, Factors, Lu, nan_or_larger};
-use crate::kinematics::newton::{Correction, Limits, Rejected, STALLED};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::{System, Targets};
+use crate::kinematics::tolerances::{NEGLIGIBLE_LENGTH, STALLED};
 use crate::mechanism::{Jet, MarkerId};
 
 pub(super) use equations::column_owners;
@@ -35,20 +33,18 @@ pub(in crate::kinematics) struct CoupledBlock {
     jacobian: Jacobian,
     condition: Condition,
     residual: Vec<f64>,
-    /// The largest residual in multiples of its rounding error, and that at the start of the
-    /// sub-step.
+    /// Largest residual in multiples of its rounding error, at the last evaluation and at the start
+    /// of the sub-step.
     excess: f64,
     start_excess: f64,
     correction: Vec<f64>,
     test: Box<ContractionTest>,
-    tubes: CertifiedTubes,
-    segment: CheckedSegment,
     /// The markers of its bodies.
     markers: Vec<MarkerId>,
-    /// Largest distance of these from the origins of the bodies, as a part of the size of their
-    /// part of the mechanism: an angle moves points by as much.
+    /// Largest distance of a marker from its body's origin, divided by the size of the block's part
+    /// of the mechanism: a small angle moves the marker by that many sizes per radian.
     length: f64,
-    /// The size of that part, as a part of the mechanism's size.
+    /// Size of the block's part of the mechanism, divided by the mechanism's size.
     part: f64,
 }
 
@@ -81,8 +77,6 @@ impl CoupledBlock {
             excess: 0.0,
             start_excess: 0.0,
             correction: vec![0.0; order],
-            tubes: CertifiedTubes::new(order + test.known.len()),
-            segment: CheckedSegment::new(order, test.known.len()),
             test,
             markers,
             length: 1.0,
@@ -103,8 +97,8 @@ impl CoupledBlock {
 
     /// Replaces the Jacobian by its factors.
     fn decompose(&mut self) -> Result<(), Rejected> {
-        // A row that hardly depends on the block's own unknowns makes them run away, however
-        // well the rows of the block agree with each other.
+        // Pivots are compared with the upstream entries too: a row that hardly depends on the
+        // block's own unknowns makes these run away when upstream ones move.
         let Jacobian { lu, upstream } = &mut self.jacobian;
         let upstream = upstream.iter().map(|entry| entry.value.abs());
         lu.factorise(upstream.fold(0.0, f64::max))
@@ -133,8 +127,8 @@ impl SolveBlock for CoupledBlock {
         &self.equations.columns
     }
 
-    /// Returns the work of evaluating, factorising and bounding the rows a few times, and of the
-    /// inverse where it is written down.
+    /// Returns the work of evaluating, factorising and bounding the rows a few times, and of
+    /// computing the inverse if there is one.
     fn work(&self) -> f64 {
         let order = self.equations.rows.len() as f64;
         let inverse = if self.test.inverse.is_empty() {
@@ -152,11 +146,10 @@ impl SolveBlock for CoupledBlock {
         _targets: &Targets,
         _pivots: &mut Pivots,
     ) {
-        self.forget_proofs();
         self.equations.set_size(system, at);
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
         let longest = arms.fold(0.0, f64::max);
-        self.length = if longest > ROUNDING {
+        self.length = if longest > NEGLIGIBLE_LENGTH {
             (longest / (at.size() * self.part)).min(1.0)
         } else {
             1.0
@@ -273,10 +266,11 @@ impl SolveBlock for CoupledBlock {
         self.condition.rcond(&mut self.jacobian.lu)
     }
 
-    /// Returns the ratio of the extreme pivots. Along a row of loops it falls with the square of
-    /// their number, however far from a singular position they are; this effect is left out.
+    /// Returns the ratio of the smallest to the largest pivot. In a row of loops the ratio falls
+    /// with the square of the number of loops, even far from singular positions; a factor cancels
+    /// this effect.
     fn regularity(&self) -> f64 {
-        /// Most unknowns that are no row of loops yet.
+        /// Unknowns up to which a block does not count as a row of loops.
         const FEW: f64 = 24.0;
         let (low, high) = self.jacobian.lu.pivot_range();
         let row = (self.equations.rows.len() as f64 / FEW).max(1.0);
@@ -296,28 +290,15 @@ impl SolveBlock for CoupledBlock {
     fn copy_choices(&self, to: &mut BlockChoices) {
         self.jacobian.lu.copy_pivots(&mut to.pivots[0]);
         self.test.middle.lu.copy_pivots(&mut to.pivots[1]);
-        to.segment.clone_from(&self.segment);
     }
 
     fn take_choices(&mut self, from: &BlockChoices) -> bool {
-        let BlockChoices { pivots, segment } = from;
-        let fits = segment.start.len() == self.segment.start.len()
-            && segment.way.len() == self.segment.way.len()
-            && segment.leading < segment.way.len();
-        if fits {
-            self.segment.clone_from(segment);
-        }
-        let [own, middle] = pivots;
-        fits && self.jacobian.lu.use_pivots(own) && self.test.middle.lu.use_pivots(middle)
+        let [own, middle] = &from.pivots;
+        self.jacobian.lu.use_pivots(own) && self.test.middle.lu.use_pivots(middle)
     }
 
     fn forget_pivots(&mut self) {
         self.jacobian.lu.forget_pivots();
         self.test.forget_pivots();
-    }
-
-    fn forget_proofs(&mut self) {
-        self.tubes.forget();
-        self.segment.forget();
     }
 }

@@ -26,7 +26,7 @@ pub(in crate::kinematics) struct ExplicitUnknown {
 }
 
 /// The rounding of the unknown in units of its terms: some operations at each end of a sub-step.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const TERM_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl ExplicitUnknown {
     /// Makes the solver of a row for an unknown.
@@ -73,7 +73,7 @@ impl ExplicitUnknown {
             let bend = parameters.bend(row, equation, state.at.profiles())?;
             deviation += 0.125 * bend * self.per_own.abs();
         }
-        Some(deviation + ROUNDING * terms)
+        Some(deviation + TERM_ROUNDING * terms)
     }
 }
 

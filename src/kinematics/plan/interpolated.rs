@@ -24,7 +24,7 @@ pub(in crate::kinematics) struct InterpolatedBlock {
 }
 
 /// Rounding of the polynomials, in parts of the values.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const POLYNOMIAL_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl InterpolatedBlock {
     pub(in crate::kinematics) fn new(block: BlockSolver, crossing: Arc<Crossing>) -> Self {
@@ -99,7 +99,7 @@ impl InterpolatedBlock {
                 let [slope, bend] = self.crossing.steepest(local);
                 let deviation = 0.125 * bend * way * way
                     + slope * driver_deviation
-                    + ROUNDING * (1.0 + before.abs() + now.abs());
+                    + POLYNOMIAL_ROUNDING * (1.0 + before.abs() + now.abs());
                 if angles && body < bodies {
                     bounds.set_spread(body, f64::INFINITY);
                     let (sin, cos) = before.sin_cos();
@@ -202,9 +202,5 @@ impl SolveBlock for InterpolatedBlock {
 
     fn forget_pivots(&mut self) {
         self.block.forget_pivots();
-    }
-
-    fn forget_proofs(&mut self) {
-        self.block.forget_proofs();
     }
 }

@@ -47,7 +47,7 @@ use super::system::{System, Targets};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::mechanism::Jet;
 
-pub use choices::{BlockChoices, CheckedSegment};
+pub use choices::BlockChoices;
 pub(super) use coupled::CoupledBlock;
 pub use crossing::{Crossing, Polynomial};
 pub(super) use crossing::{INNER, SEAM, divided_differences};
@@ -186,15 +186,8 @@ impl BlockPlan {
         self.choose_pivots(system, at, targets);
     }
 
-    /// Forgets the proofs that hold for several steps.
-    pub(super) fn forget_proofs(&mut self) {
-        for block in &mut self.blocks {
-            block.forget_proofs();
-        }
-    }
-
-    /// Copies what blocks take over from earlier steps. Allocates the first time and when pivots
-    /// were chosen.
+    /// Saves the choices of all blocks with sparse matrices. Allocates at the first call, and after
+    /// pivots were chosen again.
     pub(super) fn copy_choices(&self, to: &mut Vec<BlockChoices>) {
         let blocks = || self.blocks.iter().filter(|block| block.keeps_pivots());
         to.resize_with(blocks().count(), BlockChoices::default);
@@ -203,8 +196,8 @@ impl BlockPlan {
         }
     }
 
-    /// Lets blocks take over what those of another plan for the same rows have copied. Returns
-    /// false if it is of another plan.
+    /// Restores the choices that [`copy_choices`](Self::copy_choices) saved, perhaps from another
+    /// plan for the same rows. Returns false if they do not fit this plan.
     pub(super) fn take_choices(&mut self, from: &[BlockChoices]) -> bool {
         let blocks = self.blocks.iter_mut();
         let mut blocks = blocks.filter(|block| block.keeps_pivots());

@@ -1,8 +1,6 @@
 //! The gap that a block in closed form cannot close.
 
-/// A gap below this part of the lengths that it is a difference of may come from their rounding
-/// and from that of the bodies found before.
-const MARGIN: f64 = 1e-10;
+use crate::kinematics::tolerances::CERTAIN_GAP;
 
 /// The gap that a block in closed form leaves, whatever its angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +17,7 @@ impl ClosureGap {
         if (gap + lengths).is_finite() {
             Self {
                 gap: gap.max(0.0),
-                certain: gap > MARGIN * lengths,
+                certain: gap > CERTAIN_GAP * lengths,
             }
         } else {
             Self {

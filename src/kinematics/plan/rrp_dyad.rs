@@ -22,8 +22,9 @@ use crate::kinematics::certificate::Pivots;
 use crate::kinematics::constraint::Projection;
 use crate::kinematics::constraint::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::error::Proof;
-use crate::kinematics::newton::{Correction, Limits, Rejected, STALLED};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::{System, Targets};
+use crate::kinematics::tolerances::STALLED;
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
 /// x, y and phi of body a, and of body b if there is one. All follow from the angle of a, for

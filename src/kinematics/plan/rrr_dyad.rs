@@ -14,8 +14,9 @@ use super::step::{BlockState, Extrapolation, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::constraint::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::error::Proof;
-use crate::kinematics::newton::{Correction, Limits, Rejected, STALLED};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::{System, Targets};
+use crate::kinematics::tolerances::STALLED;
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
 /// x, y and phi of two bodies: P_a + A_a l_a = P_b + A_b l_b, both P found before. Newton–Raphson

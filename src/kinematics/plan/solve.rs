@@ -176,7 +176,4 @@ pub(in crate::kinematics) trait SolveBlock:
 
     /// Forgets the pivots that it keeps.
     fn forget_pivots(&mut self) {}
-
-    /// Forgets the proofs that hold for several steps.
-    fn forget_proofs(&mut self) {}
 }

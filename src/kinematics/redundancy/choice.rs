@@ -5,9 +5,7 @@ use std::fmt;
 
 use super::closure::close_on_all;
 use super::contradiction::explain_open;
-use super::rank::{
-    DEPENDENT, drivers_first, find_freedom, jacobian_rows, singular_position, weakest,
-};
+use super::rank::{drivers_first, find_freedom, jacobian_rows, singular_position, weakest};
 use super::slip::explain_misfit;
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::estimate::go_to_estimate;
@@ -15,22 +13,23 @@ use crate::kinematics::assembly::gaps::open_joints;
 use crate::kinematics::assembly::least_squares::holds;
 use crate::kinematics::error::{Error, OpenJoint};
 use crate::kinematics::linear::{Echelon, Row};
-use crate::kinematics::newton::{Limits, SINGULAR};
+use crate::kinematics::newton::Limits;
 use crate::kinematics::path::Path;
 use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, RedundantRows};
 use crate::kinematics::state::State;
 use crate::kinematics::system::structure::Structure;
+use crate::kinematics::tolerances::{DEPENDENT, SINGULAR};
 
-/// A row is fit to be solved if more than this is left of it; then rows declared later need not
-/// be.
+/// Least remainder of an accepted row. Rows are accepted in the order of declaration: what an
+/// accepted one leaves of later rows may be less, and these are set aside.
 const FIT: f64 = 1e-2;
-/// Factor on that limit where too few rows are fit.
+/// Factor on that limit as long as too few rows are accepted.
 const LESS_FIT: f64 = 0.2;
-/// The limit when rows are chosen again: nearly independent rows only.
+/// Least remainder of an accepted row when rows are chosen again at a later pose.
 const FITTER: f64 = 0.5;
-/// Assembly returns to the rows of the first pose if more than this is left of the weakest one.
+/// Least remainder of the rows of the first pose with which an assembly returns to them.
 const KEPT: f64 = 1e-3;
-/// Rows are changed for others whose determinant is this many times as large.
+/// Least ratio of determinants, new to old, for which the rows in use are changed.
 const WORTH: f64 = 2.0;
 
 /// A joint or constraint with equations that follow from the others.
@@ -67,15 +66,15 @@ impl fmt::Display for Redundancy {
 /// A choice among all rows at one pose.
 struct Choice {
     set_aside: Vec<usize>,
-    /// The least that is left of a row that is solved.
+    /// Least remainder of a solved row.
     weakest: f64,
 }
 
 /// The distance of rows from dependence.
 struct Fitness {
-    /// The least that is left of a row by those before it.
+    /// Least remainder of a row after elimination of those before it.
     weakest: f64,
-    /// The logarithm of their determinant, which depends on no order.
+    /// Logarithm of their determinant, which does not depend on their order.
     log_determinant: f64,
 }
 
@@ -115,7 +114,7 @@ pub(in crate::kinematics) fn choose_rows(
     path: &Path,
 ) -> Result<(), Error> {
     let estimate = go_to_estimate(compiled, state, path)?;
-    // Without a choice the rows chosen for other values stay.
+    // If the choice fails, the rows chosen for earlier values stay.
     let nothing = Structure::of_nothing(&compiled.system);
     let before = (
         compiled.redundant.clone(),
@@ -139,7 +138,7 @@ fn choose_rows_near(
         return Err(explain_open(compiled, state, gap, estimate));
     }
     let all = find_freedom(compiled, state).map_err(|error| {
-        // Far from where the rows hold together no rank means anything.
+        // Far from a pose that satisfies all rows, a rank means nothing.
         explain_misfit(compiled, state).unwrap_or(error)
     })?;
     let choice = choose_among(compiled, &jacobian_rows(compiled, state), FIT);
@@ -148,7 +147,7 @@ fn choose_rows_near(
         return Err(singular_position(compiled, state));
     }
     let first = match std::mem::take(&mut compiled.redundant.first) {
-        // The same rows whatever was chosen in between.
+        // The first rows stay the same, whatever was chosen in between.
         first if first.len() == choice.set_aside.len() => first,
         _ => choice.set_aside.clone(),
     };
@@ -166,8 +165,8 @@ fn choose_rows_near(
     Ok(())
 }
 
-/// Assembles a mechanism with rows set aside: closes it on all rows, then brings the rows that are
-/// solved to rounding. Returns the most corrections of a block.
+/// Assembles a mechanism with rows set aside: closes it on all rows, then corrects the solved rows
+/// down to rounding. Returns the most corrections of a block.
 ///
 /// # Errors
 ///
@@ -195,7 +194,7 @@ pub(in crate::kinematics) fn assemble_on_all(
     Ok(iterations)
 }
 
-/// Takes the rows of the first pose, or, where these are not fit, rows that depend on the present
+/// Takes the rows of the first pose if they are fit here, otherwise rows chosen from the present
 /// pose alone.
 ///
 /// # Errors
@@ -224,8 +223,8 @@ fn return_to_fit_rows(compiled: &mut CompiledMechanism, state: &mut State) -> Re
     Ok(())
 }
 
-/// Takes other rows if those in use are much nearer to dependence here. Returns whether it did.
-/// Allocates, but only where redundant rows leave a choice.
+/// Takes other rows if they are much farther from dependence here than those in use. Returns
+/// whether it did. Allocates only in a mechanism with redundant rows.
 pub(in crate::kinematics) fn change_rows(
     compiled: &mut CompiledMechanism,
     state: &mut State,
@@ -238,8 +237,8 @@ pub(in crate::kinematics) fn change_rows(
     true
 }
 
-/// Returns whether no other rows are much farther from dependence here than those in use: a change
-/// point of theirs may then be one of the mechanism.
+/// Returns whether no other rows are much farther from dependence here than those in use. Only then
+/// may a change point of these rows be one of the mechanism.
 pub(in crate::kinematics) fn are_rows_fit(compiled: &CompiledMechanism, state: &State) -> bool {
     fitter_rows(compiled, state).is_none()
 }
@@ -252,9 +251,9 @@ pub(in crate::kinematics) fn is_nearly_singular(
     choose_among(compiled, &jacobian_rows(compiled, state), FITTER).weakest < FIT
 }
 
-/// Returns a choice of rows that are much farther from dependence here than those in use, if
-/// these are near to it. At one pose rows change once at the most: the choice depends on the pose
-/// alone, and rows in use are not chosen again.
+/// Returns a choice of rows that are much farther from dependence here than those in use, if these
+/// are near to it. At one pose rows change at most once: the choice depends on the pose alone, and
+/// is not made if it equals the rows in use.
 fn fitter_rows(compiled: &CompiledMechanism, state: &State) -> Option<Choice> {
     if compiled.redundant.is_empty() || !state.pose.crossings.is_empty() {
         return None;
@@ -269,12 +268,12 @@ fn fitter_rows(compiled: &CompiledMechanism, state: &State) -> Option<Choice> {
     if choice.set_aside.len() != now.len() || choice.set_aside == *now {
         return None;
     }
-    // At a change point all rows lose rank, but some lose more of it than others.
+    // At a change point every choice of rows is nearly dependent, but some less than others.
     let there = fitness_without(compiled, &rows, &choice.set_aside);
     (there.log_determinant > here.log_determinant + WORTH.ln()).then_some(choice)
 }
 
-/// Returns the joint or constraint that a row set aside finds open by more than rounding.
+/// Returns the first joint or constraint whose row, set aside, is open by more than rounding.
 /// Allocates nothing if there is none.
 pub(in crate::kinematics) fn opened(
     compiled: &CompiledMechanism,

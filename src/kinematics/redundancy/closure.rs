@@ -6,18 +6,18 @@ use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::assembly::part::SMALL_PART;
 use crate::kinematics::assembly::search::{NoBranch, search};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::newton::SINGULAR;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::Target;
 use crate::kinematics::system::structure::Structure;
+use crate::kinematics::tolerances::SINGULAR;
 
-/// A row of a block of which no more than this is left, scaled, is superfluous. Such a block is
-/// singular, and closes to the square root of the residual only.
+/// Scaled remainder after elimination up to which a row is superfluous in its block. A block with
+/// such a row is singular and closes only to the square root of the residual, far above rounding.
 const SUPERFLUOUS: f64 = 1e-3;
 
-/// Closes the mechanism on all rows. Returns `None` if they are satisfied, otherwise the largest
-/// scaled residual of the nearest pose found, where the bodies then are.
+/// Closes the mechanism on all rows. Returns `None` if they are satisfied; otherwise moves the
+/// bodies to the nearest pose found and returns its largest scaled residual.
 pub(super) fn close_on_all(
     compiled: &mut CompiledMechanism,
     state: &mut State,
@@ -33,9 +33,9 @@ pub(super) fn close_on_all(
     close_on(&compiled.system, state, &all, estimate)
 }
 
-/// Assembles block by block on rows that can be paired with unknowns, the drivers' first, then in
-/// the order of declaration. In a block that does not close it leaves out a row that the others
-/// make superfluous, and others get their turn. Returns the failure if no pose is found.
+/// Assembles block by block on rows that are paired with unknowns: drivers' rows first, the others
+/// in the order of declaration. If a block does not close, leaves out one of its superfluous rows
+/// and pairs the rest again. Returns the failure if no pose is found.
 pub(super) fn find_start(
     compiled: &mut CompiledMechanism,
     state: &mut State,
@@ -51,7 +51,7 @@ pub(super) fn find_start(
         let failure = search(compiled, state, estimate).err();
         let block = match &failure {
             Some(failure) => failure.block,
-            // Rows that depend on each other may close by chance.
+            // Dependent rows may close by chance; their block is singular.
             None => {
                 let mut blocks = compiled.plan.blocks.iter_mut();
                 blocks.position(|block| block.rcond() < SINGULAR)?
@@ -64,8 +64,8 @@ pub(super) fn find_start(
     }
 }
 
-/// Returns the last row of a block that the others make superfluous where it closes, behind those
-/// before it; `None` if there is none, or the block does not close or is large.
+/// Returns the last superfluous row of a block, at a pose where all its rows are closed. Returns
+/// `None` if there is no such row or pose, or if the block is large.
 fn superfluous_in(
     compiled: &CompiledMechanism,
     state: &mut State,

@@ -1,7 +1,7 @@
 //! The explanation of a mechanism that does not close on all its rows.
 
 use super::closure::find_start;
-use super::rank::{DEPENDENT, constraint_rows, find_freedom, jacobian_rows};
+use super::rank::{constraint_rows, find_freedom, jacobian_rows};
 use super::slip::{AGREES, contradiction, explain_slip};
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::closure::{close_near, close_on, is_small};
@@ -14,15 +14,17 @@ use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
+use crate::kinematics::tolerances::DEPENDENT;
 
 /// An origin with less than this part of the largest residual has no part in the gap.
-const TAKES_PART: f64 = 1e-3;
-/// Most origins in a large mechanism of which a smallest contradictory set is looked for, by
+const NOTICEABLE: f64 = 1e-3;
+/// Most origins of a large mechanism among which a smallest contradictory set is looked for, by
 /// leaving them out one by one.
 const MOST_ELEMENTS: usize = 12;
 
-/// Explains why a mechanism does not close. It is at a nearest pose, where its rows are open by up
-/// to `gap`, scaled.
+/// Returns the error for a mechanism that does not close. `gap` is its largest scaled residual.
+///
+/// Before: the bodies are at the nearest pose.
 pub(super) fn explain_open(
     compiled: &mut CompiledMechanism,
     state: &mut State,
@@ -49,7 +51,7 @@ pub(super) fn explain_open(
         return error;
     }
     let mut open = origins_open(compiled, state, &all, gap);
-    // Excess drivers ask for a motion that the constraints, closed by themselves, do not give.
+    // With excess drivers the constraints close by themselves.
     let constraints = constraint_rows(&compiled.system);
     let without_drivers = close_on(&compiled.system, state, &constraints, estimate);
     if without_drivers.is_none()
@@ -65,7 +67,7 @@ pub(super) fn explain_open(
         open = origins_open(compiled, state, &all, 0.0);
     }
     if is_small(system) || open.len() <= MOST_ELEMENTS {
-        // The origin declared first stays, of two that can replace each other.
+        // The origin declared first stays, where two of them can replace each other.
         for origin in open.clone().into_iter().rev() {
             let others: Vec<_> = open.iter().copied().filter(|e| *e != origin).collect();
             if close_on(system, state, &system.rows_of(&others), estimate).is_some() {
@@ -75,7 +77,7 @@ pub(super) fn explain_open(
     }
     let rows = system.rows_of(&open);
     let origins = open.clone();
-    // People look for one joint that does not meet: the one declared last.
+    // The gap is shown in one joint, the one declared last: people look for one that is open.
     let is_driver = |origin: &Origin| matches!(origin, Origin::Driver(_));
     let last = open.iter().rfind(|origin| !is_driver(origin));
     let Some(&last) = last.or(open.last()) else {
@@ -150,7 +152,7 @@ fn origins_open(
     let system = &compiled.system;
     let rows = rows.iter().filter(|&&row| {
         let value = system.evaluate_row(row, state.values(), |_, _| {});
-        value.value.abs() >= TAKES_PART * largest
+        value.value.abs() >= NOTICEABLE * largest
     });
     let mut origins: Vec<_> = rows.map(|&row| system.equations()[row].origin).collect();
     origins.sort_unstable();
@@ -158,9 +160,10 @@ fn origins_open(
     origins
 }
 
-/// Returns whether some of these rows depend on the others, on which the mechanism is closed. A
-/// loop that is too short does not close, but could if it were longer; rows that depend on the
-/// others have no say whatever.
+/// Returns whether some of these rows depend on the others. Such rows contradict the others; a loop
+/// that is merely too short has independent rows.
+///
+/// Before: the mechanism is closed on the others.
 fn depend_on(
     compiled: &CompiledMechanism,
     state: &State,

@@ -33,5 +33,5 @@ pub(super) use choice::{
     are_rows_fit, assemble_on_all, change_rows, choose_rows, is_nearly_singular, opened,
     redundancies,
 };
-pub(super) use rank::{DEPENDENT, drivers_first, jacobian_rows};
+pub(super) use rank::{drivers_first, jacobian_rows};
 pub(super) use watch::watch_between;

@@ -5,21 +5,17 @@ use crate::kinematics::Origin;
 use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::Error;
-use crate::kinematics::linear::{Echelon, ReducedRow, Row};
+use crate::kinematics::linear::{Echelon, ReducedRow, Row, spread};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
+use crate::kinematics::tolerances::{DEPENDENT, LEAST_COEFFICIENT};
 use crate::mechanism::{BodyId, DriverId, JointKind, MarkerId, Mechanism};
 
-/// A row of which no more than this is left, scaled, depends on the others. A singular position
-/// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
-/// 1e-2.
-pub(in crate::kinematics) const DEPENDENT: f64 = 1e-6;
-/// Distance to the place that tells redundancy from a singular position, in radians and
-/// characteristic lengths: enough for rank to show, not so far that it is another mechanism.
+/// Distance of the other poses that tell redundancy from a singular position, in radians and
+/// characteristic lengths: far enough for the rank to change, near enough for the mechanism to
+/// close.
 const AWAY: f64 = 0.03;
-/// A factor in a combination of rows below this part of the largest is rounding.
-const TAKES_PART: f64 = 1e-6;
 
 /// Ranks at one pose.
 struct Ranks {
@@ -67,8 +63,8 @@ pub(super) fn find_freedom(
     Ok(generic.redundant)
 }
 
-/// Returns the ranks where the drivers have moved a little, both ways, as far as the mechanism
-/// closes there. Excess drivers hold each other.
+/// Returns the ranks after the drivers have moved a little forwards, and backwards, without the
+/// poses at which the mechanism does not close, as with excess drivers.
 fn ranks_with_drivers_moved(
     compiled: &CompiledMechanism,
     state: &mut State,
@@ -99,7 +95,8 @@ fn ranks_with_drivers_moved(
     found
 }
 
-/// Returns the ranks a little way along a motion that the constraints leave free, both ways.
+/// Returns the ranks a little forwards, and backwards, along a motion that the constraints leave
+/// free.
 fn ranks_along_constraints(
     compiled: &CompiledMechanism,
     state: &mut State,
@@ -142,11 +139,11 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
     for left_out in &ranks.excess {
         let equations = system.equations();
         let origin = |row: usize| equations[row].origin;
-        let others = ranks.echelon.combination(left_out, TAKES_PART);
+        let others = ranks.echelon.combination(left_out, LEAST_COEFFICIENT);
         let mut set: Vec<_> = others.into_iter().map(|(row, _)| origin(row)).collect();
         let is_driver = |origin: &Origin| matches!(origin, Origin::Driver(_));
         if set.iter().any(is_driver) {
-            // Drivers that exclude each other; the joints only transmit it.
+            // Drivers exclude each other; the joints between them are not the cause.
             set.retain(is_driver);
         }
         set.push(origin(left_out.row));
@@ -287,8 +284,8 @@ pub(in crate::kinematics) fn jacobian_rows(
     rows.map(gradient).collect()
 }
 
-/// Explains a pose at which the rows all together lose rank: names the bodies that can move there
-/// though no driver does.
+/// Returns the error for a pose at which all rows together lose rank. Names the bodies that can
+/// move there while the drivers rest.
 pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> Error {
     let system = &compiled.system;
     let rows = jacobian_rows(compiled, state);
@@ -303,7 +300,7 @@ pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> 
     let mut echelon = eliminate(DEPENDENT);
     let mut rcond = 0.0;
     if echelon.free().is_empty() {
-        // Nearly singular: without the weakest row.
+        // The pose is nearly singular: the motion is the one that the weakest row prevents.
         rcond = weakest(&echelon);
         echelon = eliminate(rcond);
     }
@@ -319,10 +316,10 @@ pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> 
 
 /// Returns the names of the bodies that move in the motions left by the rows of `echelon`.
 fn moved_by(system: &System, echelon: &Echelon) -> Vec<String> {
-    /// A part of the largest motion that is not rounding.
+    /// Least part of the largest motion that is not rounding.
     const MOVES: f64 = 1e-5;
-    /// More motions than this are looked at in mixtures of all of them, several times: a
-    /// coincidence in which motions cancel does not come twice.
+    /// Most motions that are looked at one by one. More of them are looked at in several mixtures
+    /// of all: motions that cancel in one mixture do not cancel in another.
     const FEW: usize = 64;
     const MIXTURES: usize = 8;
     let free = echelon.free();
@@ -344,15 +341,14 @@ fn moved_by(system: &System, echelon: &Echelon) -> Vec<String> {
     system.describe_moved(largest.into_iter().enumerate(), MOVES)
 }
 
-/// Returns the least that is left of a row of `echelon`.
+/// Returns the least remainder of a row of `echelon`.
 pub(super) fn weakest(echelon: &Echelon) -> f64 {
     let left = echelon.kept().iter().map(|kept| kept.remainder);
     left.fold(1.0, f64::min)
 }
 
 /// Returns a factor for the k-th of several motions, so that they do not cancel: from a half to
-/// one and a half, spread evenly by the golden ratio.
+/// one and a half.
 fn mixture(k: usize) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    0.5 + (GOLDEN * (k + 1) as f64).fract()
+    0.5 + spread(k + 1)
 }

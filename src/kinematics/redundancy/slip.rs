@@ -1,10 +1,11 @@
 //! Redundant constraints whose numbers do not quite agree.
 //!
-//! A third crank a micrometre too long leaves rows that nearly depend on each other and cannot hold
-//! together. Whether such a mechanism closes, and where, depends on the size of the gap by chance;
-//! so the rows' dependence is judged at the nearest pose, by a rank that is as coarse as the gap.
+//! Example: a parallelogram with a third crank that is a micrometre too long. Its rows nearly
+//! depend on each other and have no common solution. Whether an assembly closes it, and where, is
+//! chance. Therefore the rank is computed at the nearest pose, with a tolerance that grows with the
+//! gap.
 
-use super::rank::{DEPENDENT, constraint_rows, jacobian_rows};
+use super::rank::{constraint_rows, jacobian_rows};
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
@@ -13,25 +14,31 @@ use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
+use crate::kinematics::tolerances::DEPENDENT;
 use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};
 
-/// Largest scaled residual, beyond its rounding, of rows that agree. Until other rows are chosen it
-/// grows by less than a thousand, to the limit that is watched during a motion.
+/// Largest scaled residual, less its rounding, of rows that agree. A motion multiplies the residual
+/// by less than a thousand before other rows are chosen: it stays below the 1e-9 at which the
+/// tracker rejects a step.
 pub(super) const AGREES: f64 = 1e-12;
-/// Multiple of the rounding of a redundant row that rounding in the rows that are solved may make.
-const ROUNDINGS: f64 = 1e3;
+/// Largest residual of a redundant row that counts as rounding, in multiples of the row's own
+/// rounding error: the solved rows add theirs.
+const REDUNDANT_ROUNDINGS: f64 = 1e3;
 /// Largest scaled gap between constraints that are meant to agree.
 const LARGEST: f64 = 0.03;
-/// Ratio of what may be left of a nearly dependent row to the square root of the gap: next to a flat
-/// pose the least gap lies that far away.
+/// Ratio of the largest remainder of a nearly dependent row to the square root of the gap: next to
+/// a flat pose, the pose of least gap is about that root away, and remainders grow with the
+/// distance.
 const LEFT: f64 = 4.0;
-/// Most that may be left of such a row.
+/// Largest remainder of such a row, whatever the gap.
 const MOST_LEFT: f64 = 0.2;
-/// Factors in a combination of rows below this multiple of what is left come from the gap.
-const TAKES_PART: f64 = 3.0;
+/// Ratio of a coefficient in a combination of rows to the remainder of the combination. Smaller
+/// coefficients are attributed to the gap.
+const ABOVE_REMAINDER: f64 = 3.0;
 
-/// Returns the error for redundant constraints that are open by more than rounding at the present
-/// pose, where the mechanism is nearly closed.
+/// Returns the error for redundant constraints that are open by more than rounding.
+///
+/// Before: the mechanism is nearly closed at the present pose.
 pub(super) fn explain_misfit(compiled: &CompiledMechanism, state: &mut State) -> Option<Error> {
     let system = &compiled.system;
     let rows = 0..system.equations().len();
@@ -39,7 +46,7 @@ pub(super) fn explain_misfit(compiled: &CompiledMechanism, state: &mut State) ->
         let value = system.evaluate_row(row, state.values(), |_, _| {});
         (
             value.value.abs(),
-            value.value.abs() - ROUNDINGS * value.rounding,
+            value.value.abs() - REDUNDANT_ROUNDINGS * value.rounding,
         )
     });
     let (gap, excess) = open.fold((0.0_f64, 0.0_f64), |(gap, excess), row| {
@@ -52,8 +59,8 @@ pub(super) fn explain_misfit(compiled: &CompiledMechanism, state: &mut State) ->
     }
 }
 
-/// Returns the error for nearly redundant constraints; `None` if the mechanism would not be
-/// redundant without the gap, or is far from closed. Its rows are open by up to `gap`, scaled, at
+/// Returns the error for nearly redundant constraints. Returns `None` if the mechanism is not
+/// redundant, even without the gap, or is far from closed. `gap` is the largest scaled residual at
 /// the present pose.
 pub(super) fn explain_slip(
     compiled: &CompiledMechanism,
@@ -92,8 +99,8 @@ pub(super) fn contradiction(
     }
 }
 
-/// Returns the constraints of the dependent row that is open most, if the rank is full but for rows
-/// that depend on constraints.
+/// Returns the origins of the dependent row with the largest gap and of the rows that it depends
+/// on. Returns `None` if a motion is free or a driver depends on other rows.
 fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Option<Vec<Origin>> {
     if gap.is_nan() || gap > LARGEST {
         return None;
@@ -116,7 +123,7 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
         });
         let miss = sum.abs() / total;
         if worst.as_ref().is_none_or(|(most, _)| miss > *most) {
-            let least = TAKES_PART * dependent.remainder.max(DEPENDENT);
+            let least = ABOVE_REMAINDER * dependent.remainder.max(DEPENDENT);
             let others = combination.into_iter();
             let others = others.filter(|(_, factor)| factor.abs() > least);
             let mut origins: Vec<_> = others.map(|(other, _)| equations[other].origin).collect();
@@ -128,7 +135,7 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
     }
     for (row, equation) in equations.iter().enumerate() {
         if matches!(equation.target, Target::Driver(_)) {
-            // A driver of a mechanism that cannot move has nothing to do with the gap.
+            // The mechanism cannot move as the driver asks: the gap is not the cause.
             if echelon.offer(row, &rows[row], left).is_some() {
                 return None;
             }
@@ -138,8 +145,9 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
     (echelon.kept().len() == system.unknowns()).then_some(origins)
 }
 
-/// Returns the length that would close an origin: that of a link, or of a body that two pins
-/// hold. All other origins are closed at the present pose.
+/// Returns the length of a link, or between the two pins of a body, that would close an origin.
+///
+/// Before: all other origins are closed at the present pose.
 fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
     let mechanism = system.mechanism();
     let Origin::Joint(index) = origin else {

@@ -10,14 +10,15 @@ use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, ContourRow};
 use crate::kinematics::state::State;
 
-/// The most by which a row may be open between the ends of a sub-step, scaled.
+/// Largest scaled residual of a row set aside between the ends of a sub-step.
 const OPEN_BETWEEN: f64 = 1e-4;
-/// The largest move of an unknown, in radians and characteristic lengths, in a sub-step in which a
-/// contour has no bounds, as pieces of its profile meet: the row is looked at from end to end.
-const NARROW: f64 = 1e-3;
+/// Largest move of an unknown, in radians and characteristic lengths, in a sub-step whose row has
+/// no bound, because pieces of the profile meet there. The row is then checked at both ends only.
+const SHORT: f64 = 1e-3;
 
-/// Bounds the rows set aside that depend on a contour over a sub-step, at whose end the mechanism
-/// is and whose blocks are bounded. Allocates nothing.
+/// Bounds over a sub-step the rows set aside that depend on a contour. Allocates nothing.
+///
+/// Before: the mechanism is at the end of the sub-step, and all blocks have written their bounds.
 ///
 /// # Errors
 ///
@@ -31,7 +32,7 @@ pub(in crate::kinematics) fn watch_between(
     rows.try_for_each(|row| {
         let step_ratio = match open_between(compiled, state, row, bounds) {
             Ok(open) => open / OPEN_BETWEEN,
-            Err(largest_move) if largest_move <= NARROW => {
+            Err(largest_move) if largest_move <= SHORT => {
                 bounds.checked = true;
                 0.0
             }
@@ -45,7 +46,8 @@ pub(in crate::kinematics) fn watch_between(
 ///
 /// # Errors
 ///
-/// Without a bound, the largest move of its unknowns, in radians and characteristic lengths.
+/// The largest move of the row's unknowns, in radians and characteristic lengths, if it has no
+/// bound.
 fn open_between(
     compiled: &CompiledMechanism,
     state: &State,
@@ -58,7 +60,7 @@ fn open_between(
     for &column in &row.columns {
         let chord = at.coordinate(column) - state.pose.q[column];
         bounds.chord[column] = chord;
-        // All of the chord, seen from its end.
+        // The region contains the whole chord, seen from its end.
         bounds.region[column] = chord.abs() + bounds.deviation(column, &plan.pivots);
         let scale = system.column_scale(column, at.size());
         largest_move = largest_move.max(bounds.region[column] / scale);
@@ -91,7 +93,8 @@ fn open_between(
     open.ok_or(largest_move)
 }
 
-/// Bounds a row over a sub-step on which parameters move its numbers, scaled; `None` without a bound.
+/// Bounds a row, scaled, over a sub-step on which parameters move its numbers. Returns `None`
+/// without a bound.
 #[cold]
 fn open_while_moving(
     compiled: &CompiledMechanism,

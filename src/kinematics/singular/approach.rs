@@ -23,7 +23,7 @@ pub struct Approach {
 /// of a degree, and their driver moves some thousand times as slowly as they do.
 const WARNED: f64 = 1e-3;
 /// Above this the mechanism is away again, and the next approach is another one.
-const AWAY: f64 = 1e-2;
+const AWAY_AGAIN: f64 = 1e-2;
 
 impl fmt::Display for Approach {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -47,7 +47,7 @@ pub(in crate::kinematics) fn approach(
         return None;
     }
     let rcond = state.rcond(compiled);
-    if rcond > AWAY {
+    if rcond > AWAY_AGAIN {
         *near = false;
     }
     if *near || rcond >= WARNED {

@@ -14,9 +14,9 @@ const PLACES: [f64; 6] = [0.0, 0.3, 0.6, 1.4, 1.7, 2.0];
 /// Distance in α of the place that tells how far the point is.
 const PROBE: f64 = 0.01;
 /// Largest difference of the point's τ from that without the first place, relative to the way to it.
-const SAME: f64 = 1e-8;
+const SAME_PLACE: f64 = 1e-8;
 /// Rounding of τ, which runs from 0 to 1.
-const ROUNDING: f64 = 1e-14;
+const PLACE_ROUNDING: f64 = 1e-14;
 /// Most Newton corrections of the maximum of the polynomial.
 const MAX_STEPS: usize = 20;
 
@@ -55,7 +55,7 @@ pub(super) fn find_fold(
     let (_, of_fewer) = top_of(&places[1..])?;
     let (before, behind) = (places[2].alpha, places[3].alpha);
     let is_between = (top - before) * (top - behind) < 0.0;
-    if !is_between || (tau - of_fewer).abs() > SAME * (tau - start.tau) + ROUNDING {
+    if !is_between || (tau - of_fewer).abs() > SAME_PLACE * (tau - start.tau) + PLACE_ROUNDING {
         return None;
     }
     for (k, scale) in equation.scales.iter().enumerate() {

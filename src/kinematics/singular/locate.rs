@@ -33,7 +33,7 @@ impl fmt::Display for SingularKind {
 }
 
 /// The largest ε that counts as rounding, per scaled length.
-pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const EPSILON_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The same behind a block that comes from a crossing: the accuracy of the interpolation, which is
 /// more than the rounding of any mechanism near the origin.
 const INTERPOLATED: f64 = 1e-10;
@@ -69,7 +69,7 @@ pub(super) fn find(equation: &mut ReducedEquation<'_>, start: ReducedPoint, reac
     let rounding = if equation.reads_crossings() {
         INTERPOLATED
     } else {
-        ROUNDING * equation.extent()
+        EPSILON_ROUNDING * equation.extent()
     };
     let mut near = None;
     if let Some(point) = critical(equation, start.clone(), reach) {

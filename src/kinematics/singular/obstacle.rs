@@ -8,7 +8,7 @@ use super::crossings::enter_crossing;
 use super::fold::find_fold;
 use super::interpolate::crossing_of;
 use super::lines::{LOCATED, find_lines};
-use super::locate::{Finding, ROUNDING, SingularKind, find};
+use super::locate::{EPSILON_ROUNDING, Finding, SingularKind, find};
 use super::near::{NEAR, block_jacobian, near_singular};
 use super::reduced::{ReducedEquation, ReducedPoint};
 use super::upstream::{Line, Workspace};
@@ -17,6 +17,7 @@ use crate::kinematics::path::Path;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::redundancy::{are_rows_fit, change_rows};
 use crate::kinematics::state::State;
+use crate::kinematics::tolerances::SAME_PLACE_ON_PATH;
 use crate::mechanism::{DriverId, Jet};
 
 /// Distance within which a change point is looked for, in radians and characteristic lengths of
@@ -26,11 +27,7 @@ const REACH: f64 = 0.25;
 const REACH_TO_END: f64 = 0.5;
 /// A motion is stopped within this distance of a position that it cannot pass.
 const STOPPED: f64 = 0.02;
-/// A singular position at most this far behind the current place on the path counts as reached.
-const JUST_BEHIND: f64 = 1e-9;
-/// Singular positions whose places on the path differ by less count as one, as do those whose
-/// distances ahead differ by less than this part.
-const AT_ONE_PLACE: f64 = 1e-9;
+/// Singular positions whose distances ahead differ by less than this part count as one.
 const ALIKE: f64 = 0.01;
 /// Ratio of regularities up to which two blocks are nearly singular for the same reason.
 const SAME_ORDER: f64 = 100.0;
@@ -263,7 +260,7 @@ pub(in crate::kinematics) fn find_end(
     // A block and those that read it lose rank at the same place: the first of them counts.
     let nearest = located.iter().map(|(_, off)| *off);
     let nearest = nearest.fold(f64::INFINITY, f64::min);
-    let farthest = nearest + ALIKE * nearest.abs() + AT_ONE_PLACE;
+    let farthest = nearest + ALIKE * nearest.abs() + SAME_PLACE_ON_PATH;
     let first = located.iter().find(|(_, off)| *off <= farthest);
     let found =
         first.and_then(|(block, _)| singular_point(compiled, state, (path, s), *block, &mut work));
@@ -302,7 +299,8 @@ fn place_ahead(equation: &mut ReducedEquation<'_>, start: ReducedPoint) -> Optio
     // Rounding may overshoot the point by as much as the residual can resolve: Newton–Raphson
     // accepts a residual that has stopped falling at a hundred times its rounding.
     let behind = s - point.tau;
-    let is_behind = behind > JUST_BEHIND && behind * point.first[1].abs() > 4.0 * ROUNDING;
+    let is_behind =
+        behind > SAME_PLACE_ON_PATH && behind * point.first[1].abs() > 4.0 * EPSILON_ROUNDING;
     (!is_behind).then_some((kind, point))
 }
 

@@ -5,12 +5,12 @@ use crate::kinematics::assembly::nearest::search_at_once;
 use crate::kinematics::assembly::search::search;
 use crate::kinematics::assembly::turns::choose_turns;
 use crate::kinematics::error::Error;
-use crate::kinematics::newton::SINGULAR;
 use crate::kinematics::path::Path;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::redundancy::{assemble_on_all, choose_rows};
 use crate::kinematics::singular::settle;
 use crate::kinematics::state::State;
+use crate::kinematics::tolerances::SINGULAR;
 
 /// The outcome of an assembly.
 #[derive(Clone, Copy, Debug, PartialEq)]

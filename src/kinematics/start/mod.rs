@@ -22,7 +22,7 @@ use initial_pose::assemble;
 
 /// Ratio of the residual of a row to the estimate of its rounding error, up to which the row holds:
 /// the estimate counts each number once, turns of bodies and drivers are each rounded twice.
-const ROUNDINGS: f64 = 4.0;
+const ROW_ROUNDINGS: f64 = 4.0;
 /// Largest relative difference of the velocities of one motion at a change point that is found
 /// twice: those of the two motions there differ by more than their errors.
 const SAME_VELOCITY: f64 = 1e-6;
@@ -256,7 +256,7 @@ impl Journey<'_> {
         let holds = |row: usize| {
             let now = system.evaluate_row(row, now, |_, _| ());
             let then = system.evaluate_row(row, then, |_, _| ());
-            then.value.abs() <= now.value.abs() + ROUNDINGS * then.rounding
+            then.value.abs() <= now.value.abs() + ROW_ROUNDINGS * then.rounding
         };
         let mut rows = 0..system.equations().len();
         rows.all(holds).then_some(turns)

@@ -17,7 +17,7 @@ pub(super) use linearise::{RowValue, Values};
 use super::constraint::configuration::{Configuration, on_nearest_turn};
 use super::constraint::moving_configuration::VariedConfiguration;
 use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, TurnEffect};
-use crate::kinematics::linear::nan_or_larger;
+use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
     DriverId, Expression, Jet, Mechanism, Motion, MovingProfile, Number, ParameterId,
@@ -213,16 +213,15 @@ impl System {
     }
 
     /// Returns a configuration that belongs to no motion, at which nothing is in line or at right
-    /// angles: its unknowns are spread evenly by the golden ratio.
+    /// angles.
     pub(in crate::kinematics) fn anywhere(&self, at: &Configuration) -> Configuration {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let q: Vec<_> = (0..self.unknowns())
             .map(|column| {
                 let scale = self
                     .column_part(column)
                     .map_or(at.size(), |part| at.size() * part);
                 let k = column + 1;
-                scale * (GOLDEN * k as f64).fract() + (k % 3) as f64
+                scale * spread(k) + (k % 3) as f64
             })
             .collect();
         let mut anywhere = at.clone();
@@ -304,7 +303,7 @@ impl System {
     /// Checks the limits of derived parameters; those of others are checked where they are set.
     fn check_derived(&self, parameters: &[f64]) -> Result<(), Error> {
         /// Rounding of a value between two others, in parts of a limit.
-        const ROUNDING: f64 = 4.0 * f64::EPSILON;
+        const LIMIT_ROUNDING: f64 = 4.0 * f64::EPSILON;
         let all = self.mechanism.parameters.iter().zip(parameters);
         for (parameter, &value) in all.filter(|(parameter, _)| parameter.derived) {
             let limits = [
@@ -313,7 +312,7 @@ impl System {
             ];
             for (limit, beyond, inwards) in limits {
                 if let Some(limit) = limit
-                    && inwards * (value - limit) < -ROUNDING * limit.abs()
+                    && inwards * (value - limit) < -LIMIT_ROUNDING * limit.abs()
                 {
                     return Err(Error::Limit {
                         name: parameter.name.clone(),

@@ -4,8 +4,9 @@ use nalgebra::Vector2;
 use petgraph::unionfind::UnionFind;
 
 use super::{Equation, Target};
-use crate::kinematics::constraint::configuration::{ROUNDING, extent};
+use crate::kinematics::constraint::configuration::extent;
 use crate::kinematics::constraint::{Dimension, Incidence};
+use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{JointKind, Mechanism, ProfileInForce};
 
 /// Least part of the mechanism's size that counts: a body of some eps of it is a point.
@@ -71,7 +72,7 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
     let relative = |body: usize| {
         let size = sizes[parts.find(body)];
         let part = size / largest;
-        if size > ROUNDING && part > LEAST && part < 1.0 {
+        if size > NEGLIGIBLE_LENGTH && part > LEAST && part < 1.0 {
             part
         } else {
             1.0

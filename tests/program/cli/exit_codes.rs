@@ -49,10 +49,19 @@ fn a_mechanism_without_driver_exits_with_1_and_says_what_is_loose() {
     assert!(stderr(&assert).contains("free to move: body `crank`"));
 }
 
+/// Asserts that each command ends as one of bad usage, with this part of its message.
+fn exit_with_2(cases: &[(&[&str], &str)]) {
+    for (arguments, expected) in cases {
+        let assert = biela(arguments).code(2);
+        let message = stderr(&assert);
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+    }
+}
+
 #[test]
-fn bad_usage_exits_with_2() {
-    for (arguments, expected) in [
-        (&["check"][..], "required"),
+fn bad_commands_and_times_exit_with_2() {
+    exit_with_2(&[
+        (&["check"], "required"),
         (
             &["check", "no_such_file.toml"],
             "cannot read `no_such_file.toml`",
@@ -106,6 +115,12 @@ fn bad_usage_exits_with_2() {
             ],
             "--plot: 1000001 rows are more than the 1000000 of which a picture is made",
         ),
+    ]);
+}
+
+#[test]
+fn bad_drivers_and_parameters_exit_with_2() {
+    exit_with_2(&[
         (
             &["run", "mechanisms/tlv.toml", "--drive", "side_length"],
             "has no `=`",
@@ -188,6 +203,12 @@ fn bad_usage_exits_with_2() {
             "--drive: at t = 0, the velocity of `sqrt(t)` is not finite\n",
         ),
         (&["run", "mechanisms/tlv.toml", "--set", "base=t"], "--set"),
+    ]);
+}
+
+#[test]
+fn bad_pictures_and_files_exit_with_2() {
+    exit_with_2(&[
         (
             &["draw", "mechanisms/tlv.toml", "-o", "tlv.pdf"],
             "`tlv.pdf` has neither the extension .svg nor .png",
@@ -243,11 +264,7 @@ fn bad_usage_exits_with_2() {
             ],
             "cannot write",
         ),
-    ] {
-        let assert = biela(arguments).code(2);
-        let message = stderr(&assert);
-        assert!(message.contains(expected), "{arguments:?}: {message}");
-    }
+    ]);
 }
 
 #[cfg(target_os = "linux")]

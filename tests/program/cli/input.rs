@@ -2,29 +2,33 @@
 
 use crate::cli::program::{altered, biela, column, stderr, stdout};
 
+/// Runs a mechanism of triangles for four seconds, its driver along the rows of a file.
+fn run(content: &str, more: &[&str]) -> assert_cmd::assert::Assert {
+    let folder = tempfile::tempdir().expect("there is a folder");
+    let path = folder.path().join("inputs.csv");
+    std::fs::write(&path, content).expect("it can be written");
+    let mut arguments = vec![
+        "run",
+        "mechanisms/tlv.toml",
+        "--input",
+        path.to_str().expect("it is text"),
+    ];
+    arguments.extend(["--stop", "4", "--step", "0.5"]);
+    arguments.extend(more);
+    biela(&arguments)
+}
+
+/// Returns whether all values agree to rounding.
+fn near(found: &[f64], expected: &[f64]) -> bool {
+    let pairs = found.iter().zip(expected);
+    found.len() == expected.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12)
+}
+
 #[test]
 fn run_follows_the_values_of_a_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = |content: &str, more: &[&str]| {
-        let path = folder.path().join("inputs.csv");
-        std::fs::write(&path, content).unwrap();
-        let mut arguments = vec![
-            "run",
-            "mechanisms/tlv.toml",
-            "--input",
-            path.to_str().unwrap(),
-        ];
-        arguments.extend(["--stop", "4", "--step", "0.5"]);
-        arguments.extend(more);
-        biela(&arguments)
-    };
     // Straight lines, held before and after, with a jump at 2 s.
     let content = "time,side_length.position\n1,0.3\n2,0.4\n2.0,0.5\n3,0.45\n";
     let csv = stdout(&run(content, &[]).success());
-    let near = |found: &[f64], expected: &[f64]| {
-        let pairs = found.iter().zip(expected);
-        found.len() == expected.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12)
-    };
     let position = column(&csv, "side_length.position");
     assert!(
         near(
@@ -55,6 +59,10 @@ fn run_follows_the_values_of_a_file() {
     let csv = stdout(&run(content, &[]).success());
     assert!((column(&csv, "side_length.velocity")[4] - 0.15).abs() < 1e-12);
     assert!((column(&csv, "side_length.acceleration")[4] - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn columns_are_separated_and_lines_end_in_any_usual_way() {
     // Whatever separates the columns, and however lines begin and end.
     for content in [
         "time;side_length\n1;0.3\n3;0.5\n",
@@ -68,6 +76,10 @@ fn run_follows_the_values_of_a_file() {
         let expected = [0.3, 0.3, 0.3, 0.35, 0.4, 0.45, 0.5, 0.5, 0.5];
         assert!(near(&position, &expected), "{content}: {position:?}");
     }
+}
+
+#[test]
+fn faults_of_a_file_of_values_are_named_with_their_line() {
     for (content, more, expected) in [
         (
             "zeit,side_length\n0,0.3\n",
@@ -173,6 +185,11 @@ fn run_follows_the_values_of_a_file() {
         let message = stderr(&run(content, more).code(2));
         assert!(message.contains(expected), "{message}");
     }
+}
+
+#[test]
+fn values_of_a_file_replace_a_motion() {
+    let folder = tempfile::tempdir().unwrap();
     // A motion of the file gives way.
     let content = "time,crank_angle.position\n0,0\n1,1\n";
     let path = folder.path().join("crank.csv");

@@ -1,6 +1,6 @@
 //! Model exchange. There are no event indicators.
 
-use super::types::{fmi2EventInfo, fmi2False};
+use super::types::{fmi2Boolean, fmi2EventInfo, fmi2False, fmi2Real};
 use crate::fmi::Call;
 use crate::fmi::abi::arguments::{fill, room, slice};
 use crate::fmi::abi::calls::instance_calls;
@@ -11,7 +11,7 @@ instance_calls! {
     /// `fmi2EnterContinuousTimeMode`.
     fmi2EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
     /// `fmi2SetTime`.
-    fmi2SetTime(time: f64) = |instance| instance.set_time(time);
+    fmi2SetTime(time: fmi2Real) = |instance| instance.set_time(time);
     /// `fmi2NewDiscreteStates`: there are no discrete states. The simulation ends at an event for
     /// whose values no pose exists.
     fmi2NewDiscreteStates(event_info: *mut fmi2EventInfo) = |instance| {
@@ -31,9 +31,9 @@ instance_calls! {
     /// `fmi2CompletedIntegratorStep`. Nothing is kept for going back, so that
     /// `no_set_fmu_state_prior_to_current_point` makes no difference.
     fmi2CompletedIntegratorStep(
-        _no_set_fmu_state_prior_to_current_point: i32,
-        enter_event_mode: *mut i32,
-        terminate_simulation: *mut i32,
+        _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
+        enter_event_mode: *mut fmi2Boolean,
+        terminate_simulation: *mut fmi2Boolean,
     ) = |instance| {
         instance.allow(Call::CompletedIntegratorStep)?;
         let enter = room("enterEventMode", enter_event_mode, 1)?;
@@ -44,30 +44,30 @@ instance_calls! {
         Ok(())
     };
     /// `fmi2SetContinuousStates`.
-    fmi2SetContinuousStates(states: *const f64, count: usize) = |instance| {
+    fmi2SetContinuousStates(states: *const fmi2Real, count: usize) = |instance| {
         instance.allow(Call::SetContinuousStates)?;
         instance.set_continuous_states(&slice("x", states, count)?)
     };
     /// `fmi2GetDerivatives`.
-    fmi2GetDerivatives(derivatives: *mut f64, count: usize) = |instance| {
+    fmi2GetDerivatives(derivatives: *mut fmi2Real, count: usize) = |instance| {
         instance.allow(Call::GetDerivatives)?;
         let to = room("derivatives", derivatives, count)?;
         fill(to, instance.derivatives_of_states(count)?);
         Ok(())
     };
     /// `fmi2GetEventIndicators`: there are none.
-    fmi2GetEventIndicators(_: *mut f64, count: usize) = |instance| {
+    fmi2GetEventIndicators(_: *mut fmi2Real, count: usize) = |instance| {
         instance.event_indicators(count)
     };
     /// `fmi2GetContinuousStates`.
-    fmi2GetContinuousStates(states: *mut f64, count: usize) = |instance| {
+    fmi2GetContinuousStates(states: *mut fmi2Real, count: usize) = |instance| {
         instance.allow(Call::GetContinuousStates)?;
         let to = room("x", states, count)?;
         fill(to, instance.continuous_states(count)?);
         Ok(())
     };
     /// `fmi2GetNominalsOfContinuousStates`.
-    fmi2GetNominalsOfContinuousStates(nominals: *mut f64, count: usize) = |instance| {
+    fmi2GetNominalsOfContinuousStates(nominals: *mut fmi2Real, count: usize) = |instance| {
         instance.allow(Call::GetNominalsOfContinuousStates)?;
         let to = room("x_nominal", nominals, count)?;
         fill(to, instance.nominals(count)?);

@@ -1,11 +1,10 @@
 //! Getting, setting and serializing the FMU state.
 
-use std::ffi::c_char;
-
+use super::types::{fmi2Byte, fmi2FMUstate};
 use crate::fmi::abi::saved_state::fmu_state_calls;
 
 fmu_state_calls! {
-    c_char;
+    fmi2FMUstate, fmi2Byte;
     fmi2GetFMUstate fmi2SetFMUstate fmi2FreeFMUstate
     fmi2SerializedFMUstateSize fmi2SerializeFMUstate fmi2DeSerializeFMUstate
 }

@@ -1,16 +1,16 @@
 //! The host's logger callback.
 
-use std::ffi::{CString, c_void};
+use std::ffi::CString;
 
-use super::types::{Logger, fmi2CallbackFunctions};
+use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment};
 use crate::fmi::abi::component::status_code;
 use crate::fmi::abi::message::{c_string, message_text};
 use crate::fmi::{Category, Sink, Status};
 
 /// The host's logger, with what it wants to be called with.
 pub(super) struct HostLogger {
-    callback: Logger,
-    environment: *mut c_void,
+    callback: fmi2CallbackLogger,
+    environment: fmi2ComponentEnvironment,
     instance_name: CString,
 }
 

@@ -1,26 +1,28 @@
 //! From instantiation to freeing: what changes the state without moving the mechanism.
 
-use std::ffi::c_char;
 use std::ptr::null_mut;
 
 use super::host::HostLogger;
-use super::types::{fmi2CallbackFunctions, fmi2CoSimulation, fmi2ModelExchange};
+use super::types::{
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
+    fmi2Real, fmi2String, fmi2Type,
+};
 use crate::fmi::abi::arguments::{refuse, text};
 use crate::fmi::abi::calls::instance_calls;
-use crate::fmi::abi::component::{Component, Handle};
+use crate::fmi::abi::component::Component;
 use crate::fmi::abi::instantiation::{instantiate, texts};
 use crate::fmi::abi::message::set_debug_logging;
 use crate::fmi::{Category, Error, Instance, Interface, Sink, Status, Version, resource_path};
 
 /// `fmi2GetTypesPlatform`: always `"default"`.
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+pub extern "C" fn fmi2GetTypesPlatform() -> fmi2String {
     c"default".as_ptr()
 }
 
 /// `fmi2GetVersion`: always `"2.0"`.
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetVersion() -> *const c_char {
+pub extern "C" fn fmi2GetVersion() -> fmi2String {
     c"2.0".as_ptr()
 }
 
@@ -33,14 +35,14 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
-    instance_name: *const c_char,
-    fmu_type: u32,
-    fmu_guid: *const c_char,
-    fmu_resource_location: *const c_char,
+    instance_name: fmi2String,
+    fmu_type: fmi2Type,
+    fmu_guid: fmi2String,
+    fmu_resource_location: fmi2String,
     functions: *const fmi2CallbackFunctions,
-    _visible: i32,
-    logging_on: i32,
-) -> Handle {
+    _visible: fmi2Boolean,
+    logging_on: fmi2Boolean,
+) -> fmi2Component {
     if functions.is_null() {
         return null_mut();
     }
@@ -85,7 +87,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
 ///
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeInstance(c: Handle) {
+pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     // SAFETY: the host's promise.
     unsafe { Component::take_back(c) };
 }
@@ -93,19 +95,19 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: Handle) {
 instance_calls! {
     /// `fmi2SetDebugLogging`.
     fmi2SetDebugLogging(
-        logging_on: i32,
+        logging_on: fmi2Boolean,
         n_categories: usize,
-        categories: *const *const c_char,
+        categories: *const fmi2String,
     ) = |instance| {
         set_debug_logging(instance, logging_on != 0, categories, n_categories)
     };
     /// `fmi2SetupExperiment`.
     fmi2SetupExperiment(
-        tolerance_defined: i32,
-        tolerance: f64,
-        start_time: f64,
-        stop_time_defined: i32,
-        stop_time: f64,
+        tolerance_defined: fmi2Boolean,
+        tolerance: fmi2Real,
+        start_time: fmi2Real,
+        stop_time_defined: fmi2Boolean,
+        stop_time: fmi2Real,
     ) = |instance| {
         let stop_time = (stop_time_defined != 0).then_some(stop_time);
         instance.setup_experiment(start_time, stop_time)?;

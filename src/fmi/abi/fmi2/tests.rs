@@ -1,6 +1,5 @@
 //! Cases that no host can bring about, or see, by itself. `tests/fmi/c_host` has the rest.
 
-use std::ffi::c_char;
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use std::sync::Arc;
@@ -191,6 +190,7 @@ fn arrays_begin_at_any_address() {
 macro_rules! check_signatures {
     ($($function:ident: $signature:ident,)*) => {
         $(const _: header::$signature = Some($function);)*
+        const FUNCTIONS: usize = [$(stringify!($function)),*].len();
     };
 }
 
@@ -239,6 +239,34 @@ check_signatures! {
     fmi2GetStringStatus: fmi2GetStringStatusTYPE,
 }
 
+/// Checks at compile time that each type is that of the standard's header.
+macro_rules! check_types {
+    ($($name:ident,)*) => {
+        $(const _: fn($name) -> header::$name = |value| value;)*
+        const TYPES: usize = [$(stringify!($name)),*].len();
+    };
+}
+
+check_types! {
+    fmi2Component,
+    fmi2ComponentEnvironment,
+    fmi2FMUstate,
+    fmi2ValueReference,
+    fmi2Real,
+    fmi2Integer,
+    fmi2Boolean,
+    fmi2Char,
+    fmi2String,
+    fmi2Byte,
+    fmi2Status,
+    fmi2Type,
+    fmi2StatusKind,
+    fmi2CallbackLogger,
+    fmi2CallbackAllocateMemory,
+    fmi2CallbackFreeMemory,
+    fmi2StepFinished,
+}
+
 /// The two structures, and the functions that take a pointer to one: a pointer to the header's
 /// own structure would be another type.
 macro_rules! check_layouts {
@@ -275,20 +303,29 @@ check_layouts! {
 }
 
 type Instantiate<Functions> = unsafe extern "C" fn(
-    *const c_char,
-    u32,
-    *const c_char,
-    *const c_char,
+    fmi2String,
+    fmi2Type,
+    fmi2String,
+    fmi2String,
     *const Functions,
-    i32,
-    i32,
-) -> Handle;
+    fmi2Boolean,
+    fmi2Boolean,
+) -> fmi2Component;
 const _: Instantiate<fmi2CallbackFunctions> = fmi2Instantiate;
 const _: header::fmi2InstantiateTYPE = None::<Instantiate<header::fmi2CallbackFunctions>>;
 
-type NewDiscreteStates<Info> = unsafe extern "C" fn(Handle, *mut Info) -> StatusCode;
+type NewDiscreteStates<Info> = unsafe extern "C" fn(fmi2Component, *mut Info) -> fmi2Status;
 const _: NewDiscreteStates<fmi2EventInfo> = fmi2NewDiscreteStates;
 const _: header::fmi2NewDiscreteStatesTYPE = None::<NewDiscreteStates<header::fmi2EventInfo>>;
+
+/// No exported function and no type is left out of the comparisons.
+#[test]
+fn all_functions_and_types_are_compared() {
+    // `fmi2Functions.h` has 44: two more follow below.
+    assert_eq!(FUNCTIONS, 42);
+    let types = include_str!("types.rs").matches("\npub type ").count();
+    assert_eq!(TYPES, types);
+}
 
 #[test]
 fn constants_are_those_of_the_header() {

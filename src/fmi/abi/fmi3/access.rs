@@ -1,7 +1,10 @@
 //! Setting and getting variables, all of which are scalars; clocks are none.
 
-use std::ffi::c_char;
-
+use super::types::{
+    fmi3Binary, fmi3Boolean, fmi3Clock, fmi3Float32, fmi3Float64, fmi3Int8, fmi3Int16, fmi3Int32,
+    fmi3Int64, fmi3IntervalQualifier, fmi3String, fmi3UInt8, fmi3UInt16, fmi3UInt32, fmi3UInt64,
+    fmi3ValueReference,
+};
 use crate::fmi::abi::arguments::{fill, room, slice};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, Error};
@@ -22,9 +25,9 @@ pub(super) fn check_count(name: &'static str, given: usize, expected: usize) -> 
 instance_calls! {
     /// `fmi3GetFloat64`.
     fmi3GetFloat64(
-        value_references: *const u32,
+        value_references: *const fmi3ValueReference,
         n_value_references: usize,
-        values: *mut f64,
+        values: *mut fmi3Float64,
         n_values: usize,
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
@@ -35,9 +38,9 @@ instance_calls! {
     };
     /// `fmi3SetFloat64`.
     fmi3SetFloat64(
-        value_references: *const u32,
+        value_references: *const fmi3ValueReference,
         n_value_references: usize,
-        values: *const f64,
+        values: *const fmi3Float64,
         n_values: usize,
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
@@ -46,9 +49,9 @@ instance_calls! {
     };
     /// `fmi3GetInt64`: the choices.
     fmi3GetInt64(
-        value_references: *const u32,
+        value_references: *const fmi3ValueReference,
         n_value_references: usize,
-        values: *mut i64,
+        values: *mut fmi3Int64,
         n_values: usize,
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
@@ -59,9 +62,9 @@ instance_calls! {
     };
     /// `fmi3SetInt64`.
     fmi3SetInt64(
-        value_references: *const u32,
+        value_references: *const fmi3ValueReference,
         n_value_references: usize,
-        values: *const i64,
+        values: *const fmi3Int64,
         n_values: usize,
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
@@ -78,7 +81,7 @@ macro_rules! without_variables {
                     $(
                 #[doc = concat!("`", stringify!($function), "`: there are no ", $type, " variables.")]
                 $function(
-                    value_references: *const u32,
+                    value_references: *const fmi3ValueReference,
                     n_value_references: usize,
                     $(_: $array,)+
                     n_values: usize
@@ -93,28 +96,28 @@ macro_rules! without_variables {
 }
 
 without_variables! {
-    fmi3GetFloat32(GetFloat32, "Float32", *mut f32);
-    fmi3SetFloat32(SetFloat32, "Float32", *const f32);
-    fmi3GetInt8(GetInt8, "Int8", *mut i8);
-    fmi3SetInt8(SetInt8, "Int8", *const i8);
-    fmi3GetUInt8(GetUInt8, "UInt8", *mut u8);
-    fmi3SetUInt8(SetUInt8, "UInt8", *const u8);
-    fmi3GetInt16(GetInt16, "Int16", *mut i16);
-    fmi3SetInt16(SetInt16, "Int16", *const i16);
-    fmi3GetUInt16(GetUInt16, "UInt16", *mut u16);
-    fmi3SetUInt16(SetUInt16, "UInt16", *const u16);
-    fmi3GetInt32(GetInt32, "Int32", *mut i32);
-    fmi3SetInt32(SetInt32, "Int32", *const i32);
-    fmi3GetUInt32(GetUInt32, "UInt32", *mut u32);
-    fmi3SetUInt32(SetUInt32, "UInt32", *const u32);
-    fmi3GetUInt64(GetUInt64, "UInt64", *mut u64);
-    fmi3SetUInt64(SetUInt64, "UInt64", *const u64);
-    fmi3GetBoolean(GetBoolean, "Boolean", *mut bool);
-    fmi3SetBoolean(SetBoolean, "Boolean", *const bool);
-    fmi3GetString(GetString, "String", *mut *const c_char);
-    fmi3SetString(SetString, "String", *const *const c_char);
-    fmi3GetBinary(GetBinary, "Binary", *mut usize, *mut *const u8);
-    fmi3SetBinary(SetBinary, "Binary", *const usize, *const *const u8);
+    fmi3GetFloat32(GetFloat32, "Float32", *mut fmi3Float32);
+    fmi3SetFloat32(SetFloat32, "Float32", *const fmi3Float32);
+    fmi3GetInt8(GetInt8, "Int8", *mut fmi3Int8);
+    fmi3SetInt8(SetInt8, "Int8", *const fmi3Int8);
+    fmi3GetUInt8(GetUInt8, "UInt8", *mut fmi3UInt8);
+    fmi3SetUInt8(SetUInt8, "UInt8", *const fmi3UInt8);
+    fmi3GetInt16(GetInt16, "Int16", *mut fmi3Int16);
+    fmi3SetInt16(SetInt16, "Int16", *const fmi3Int16);
+    fmi3GetUInt16(GetUInt16, "UInt16", *mut fmi3UInt16);
+    fmi3SetUInt16(SetUInt16, "UInt16", *const fmi3UInt16);
+    fmi3GetInt32(GetInt32, "Int32", *mut fmi3Int32);
+    fmi3SetInt32(SetInt32, "Int32", *const fmi3Int32);
+    fmi3GetUInt32(GetUInt32, "UInt32", *mut fmi3UInt32);
+    fmi3SetUInt32(SetUInt32, "UInt32", *const fmi3UInt32);
+    fmi3GetUInt64(GetUInt64, "UInt64", *mut fmi3UInt64);
+    fmi3SetUInt64(SetUInt64, "UInt64", *const fmi3UInt64);
+    fmi3GetBoolean(GetBoolean, "Boolean", *mut fmi3Boolean);
+    fmi3SetBoolean(SetBoolean, "Boolean", *const fmi3Boolean);
+    fmi3GetString(GetString, "String", *mut fmi3String);
+    fmi3SetString(SetString, "String", *const fmi3String);
+    fmi3GetBinary(GetBinary, "Binary", *mut usize, *mut fmi3Binary);
+    fmi3SetBinary(SetBinary, "Binary", *const usize, *const fmi3Binary);
 }
 
 /// Defines the functions of clocks, which touch none of their arrays: right for an empty list only.
@@ -124,7 +127,7 @@ macro_rules! without_clocks {
                     $(
                 #[doc = concat!("`", stringify!($function), "`: there are no clocks.")]
                 $function(
-                    value_references: *const u32,
+                    value_references: *const fmi3ValueReference,
                     n_value_references: usize,
                     $(_: $array),+
                 ) = |instance| {
@@ -137,24 +140,24 @@ macro_rules! without_clocks {
 }
 
 without_clocks! {
-    fmi3GetClock(GetClock, *mut bool);
-    fmi3SetClock(SetClock, *const bool);
-    fmi3GetIntervalDecimal(GetIntervalDecimal, *mut f64, *mut u32);
+    fmi3GetClock(GetClock, *mut fmi3Clock);
+    fmi3SetClock(SetClock, *const fmi3Clock);
+    fmi3GetIntervalDecimal(GetIntervalDecimal, *mut fmi3Float64, *mut fmi3IntervalQualifier);
     fmi3GetIntervalFraction(
-        GetIntervalFraction, *mut u64, *mut u64, *mut u32
+        GetIntervalFraction, *mut fmi3UInt64, *mut fmi3UInt64, *mut fmi3IntervalQualifier
     );
-    fmi3GetShiftDecimal(GetShiftDecimal, *mut f64);
-    fmi3GetShiftFraction(GetShiftFraction, *mut u64, *mut u64);
-    fmi3SetIntervalDecimal(SetIntervalDecimal, *const f64);
-    fmi3SetIntervalFraction(SetIntervalFraction, *const u64, *const u64);
-    fmi3SetShiftDecimal(SetShiftDecimal, *const f64);
-    fmi3SetShiftFraction(SetShiftFraction, *const u64, *const u64);
+    fmi3GetShiftDecimal(GetShiftDecimal, *mut fmi3Float64);
+    fmi3GetShiftFraction(GetShiftFraction, *mut fmi3UInt64, *mut fmi3UInt64);
+    fmi3SetIntervalDecimal(SetIntervalDecimal, *const fmi3Float64);
+    fmi3SetIntervalFraction(SetIntervalFraction, *const fmi3UInt64, *const fmi3UInt64);
+    fmi3SetShiftDecimal(SetShiftDecimal, *const fmi3Float64);
+    fmi3SetShiftFraction(SetShiftFraction, *const fmi3UInt64, *const fmi3UInt64);
 }
 
 instance_calls! {
     /// `fmi3ActivateModelPartition`: always refused, since there are no clocks.
     fmi3ActivateModelPartition(
-        _clock_reference: u32,
-        _activation_time: f64,
+        _clock_reference: fmi3ValueReference,
+        _activation_time: fmi3Float64,
     ) = |instance| instance.allow(Call::ActivateModelPartition);
 }

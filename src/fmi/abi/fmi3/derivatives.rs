@@ -1,14 +1,12 @@
 //! Partial derivatives, output derivatives and dependencies.
 
 use super::access::check_count;
+use super::types::{
+    fmi3Constant, fmi3DependencyKind, fmi3Dependent, fmi3Float64, fmi3Int32, fmi3ValueReference,
+};
 use crate::fmi::abi::arguments::{fill, room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, DependencyKind};
-
-/// Dependency with a constant factor, an `fmi3DependencyKind`.
-pub(super) const fmi3Constant: u32 = 1;
-/// Dependency without a particular structure, an `fmi3DependencyKind`.
-pub(super) const fmi3Dependent: u32 = 5;
 
 /// Defines the functions of partial derivatives, each with the lengths of its seed and of its
 /// sensitivity for some unknowns and knowns.
@@ -18,13 +16,13 @@ macro_rules! partial_derivatives {
                     $(
                 $(#[$doc])*
                 $function(
-                    unknowns: *const u32,
+                    unknowns: *const fmi3ValueReference,
                     n_unknowns: usize,
-                    knowns: *const u32,
+                    knowns: *const fmi3ValueReference,
                     n_knowns: usize,
-                    seed: *const f64,
+                    seed: *const fmi3Float64,
                     n_seed: usize,
-                    sensitivity: *mut f64,
+                    sensitivity: *mut fmi3Float64,
                     n_sensitivity: usize,
                 ) = |instance| {
                     let [of_seed, of_sensitivity] = ($lengths)(n_unknowns, n_knowns);
@@ -52,10 +50,10 @@ partial_derivatives! {
 instance_calls! {
     /// `fmi3GetOutputDerivatives`.
     fmi3GetOutputDerivatives(
-        value_references: *const u32,
+        value_references: *const fmi3ValueReference,
         n_value_references: usize,
-        orders: *const i32,
-        values: *mut f64,
+        orders: *const fmi3Int32,
+        values: *mut fmi3Float64,
         n_values: usize,
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
@@ -67,7 +65,7 @@ instance_calls! {
     };
     /// `fmi3GetNumberOfVariableDependencies`.
     fmi3GetNumberOfVariableDependencies(
-        value_reference: u32,
+        value_reference: fmi3ValueReference,
         n_dependencies: *mut usize,
     ) = |instance| {
         let call = Call::GetNumberOfVariableDependencies;
@@ -76,11 +74,11 @@ instance_calls! {
     };
     /// `fmi3GetVariableDependencies`. Each variable has one element, for which the index 1 stands.
     fmi3GetVariableDependencies(
-        dependent: u32,
+        dependent: fmi3ValueReference,
         element_indices_of_dependent: *mut usize,
-        independents: *mut u32,
+        independents: *mut fmi3ValueReference,
         element_indices_of_independents: *mut usize,
-        dependency_kinds: *mut u32,
+        dependency_kinds: *mut fmi3DependencyKind,
         n_dependencies: usize,
     ) = |instance| {
         let found = instance.dependencies(Call::GetVariableDependencies, dependent)?;

@@ -1,5 +1,6 @@
 //! Events, and model exchange. There are no discrete states and no event indicators.
 
+use super::types::{fmi3Boolean, fmi3Float64};
 use crate::fmi::Call;
 use crate::fmi::abi::arguments::{check_room, fill, room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
@@ -12,16 +13,16 @@ instance_calls! {
     /// `fmi3EnterContinuousTimeMode`.
     fmi3EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
     /// `fmi3SetTime`.
-    fmi3SetTime(time: f64) = |instance| instance.set_time(time);
+    fmi3SetTime(time: fmi3Float64) = |instance| instance.set_time(time);
     /// `fmi3UpdateDiscreteStates`: there are no discrete states. The simulation ends at an event for
     /// whose values no pose exists.
     fmi3UpdateDiscreteStates(
-        discrete_states_need_update: *mut bool,
-        terminate_simulation: *mut bool,
-        nominals_of_continuous_states_changed: *mut bool,
-        values_of_continuous_states_changed: *mut bool,
-        next_event_time_defined: *mut bool,
-        next_event_time: *mut f64,
+        discrete_states_need_update: *mut fmi3Boolean,
+        terminate_simulation: *mut fmi3Boolean,
+        nominals_of_continuous_states_changed: *mut fmi3Boolean,
+        values_of_continuous_states_changed: *mut fmi3Boolean,
+        next_event_time_defined: *mut fmi3Boolean,
+        next_event_time: *mut fmi3Float64,
     ) = |instance| {
         instance.allow(Call::NewDiscreteStates)?;
         let flags = [
@@ -47,9 +48,9 @@ instance_calls! {
     /// `fmi3CompletedIntegratorStep`. Nothing is kept for going back, so that
     /// `no_set_fmu_state_prior_to_current_point` makes no difference.
     fmi3CompletedIntegratorStep(
-        _no_set_fmu_state_prior_to_current_point: bool,
-        enter_event_mode: *mut bool,
-        terminate_simulation: *mut bool,
+        _no_set_fmu_state_prior_to_current_point: fmi3Boolean,
+        enter_event_mode: *mut fmi3Boolean,
+        terminate_simulation: *mut fmi3Boolean,
     ) = |instance| {
         instance.allow(Call::CompletedIntegratorStep)?;
         check_room("enterEventMode", enter_event_mode)?;
@@ -70,30 +71,30 @@ instance_calls! {
         write("nContinuousStates", count, states)
     };
     /// `fmi3SetContinuousStates`.
-    fmi3SetContinuousStates(states: *const f64, count: usize) = |instance| {
+    fmi3SetContinuousStates(states: *const fmi3Float64, count: usize) = |instance| {
         instance.allow(Call::SetContinuousStates)?;
         instance.set_continuous_states(&slice("continuousStates", states, count)?)
     };
     /// `fmi3GetContinuousStateDerivatives`.
-    fmi3GetContinuousStateDerivatives(derivatives: *mut f64, count: usize) = |instance| {
+    fmi3GetContinuousStateDerivatives(derivatives: *mut fmi3Float64, count: usize) = |instance| {
         instance.allow(Call::GetDerivatives)?;
         let to = room("derivatives", derivatives, count)?;
         fill(to, instance.derivatives_of_states(count)?);
         Ok(())
     };
     /// `fmi3GetEventIndicators`: there are none.
-    fmi3GetEventIndicators(_: *mut f64, count: usize) = |instance| {
+    fmi3GetEventIndicators(_: *mut fmi3Float64, count: usize) = |instance| {
         instance.event_indicators(count)
     };
     /// `fmi3GetContinuousStates`.
-    fmi3GetContinuousStates(states: *mut f64, count: usize) = |instance| {
+    fmi3GetContinuousStates(states: *mut fmi3Float64, count: usize) = |instance| {
         instance.allow(Call::GetContinuousStates)?;
         let to = room("continuousStates", states, count)?;
         fill(to, instance.continuous_states(count)?);
         Ok(())
     };
     /// `fmi3GetNominalsOfContinuousStates`.
-    fmi3GetNominalsOfContinuousStates(nominals: *mut f64, count: usize) = |instance| {
+    fmi3GetNominalsOfContinuousStates(nominals: *mut fmi3Float64, count: usize) = |instance| {
         instance.allow(Call::GetNominalsOfContinuousStates)?;
         let to = room("nominals", nominals, count)?;
         fill(to, instance.nominals(count)?);

@@ -1,20 +1,15 @@
 //! The host's logger callback.
 
-use std::ffi::{c_char, c_void};
-
+use super::types::{fmi3InstanceEnvironment, fmi3LogMessageCallback};
 use crate::fmi::abi::component::status_code;
 use crate::fmi::abi::message::{c_string, message_text};
 use crate::fmi::{Category, Sink, Status};
 
-/// The host's logger: its environment, status, category, message.
-pub(super) type LogMessage =
-    Option<unsafe extern "C" fn(*mut c_void, u32, *const c_char, *const c_char)>;
-
 /// The host's logger, with the environment that it wants to be called with.
 #[derive(Clone, Copy)]
 pub(super) struct HostLogger {
-    callback: LogMessage,
-    environment: *mut c_void,
+    callback: fmi3LogMessageCallback,
+    environment: fmi3InstanceEnvironment,
 }
 
 // SAFETY: the environment pointer is never read here, only handed back to the host, which uses an
@@ -22,7 +17,10 @@ pub(super) struct HostLogger {
 unsafe impl Send for HostLogger {}
 
 impl HostLogger {
-    pub(super) fn new(callback: LogMessage, environment: *mut c_void) -> Self {
+    pub(super) fn new(
+        callback: fmi3LogMessageCallback,
+        environment: fmi3InstanceEnvironment,
+    ) -> Self {
         Self {
             callback,
             environment,

@@ -1,20 +1,24 @@
 //! From instantiation to freeing: what changes the state without moving the mechanism.
 
-use std::ffi::{c_char, c_void};
 use std::path::Path;
 
-use super::host::{HostLogger, LogMessage};
+use super::host::HostLogger;
+use super::types::{
+    fmi3Boolean, fmi3ClockUpdateCallback, fmi3Float64, fmi3Instance, fmi3InstanceEnvironment,
+    fmi3IntermediateUpdateCallback, fmi3LockPreemptionCallback, fmi3LogMessageCallback, fmi3String,
+    fmi3UnlockPreemptionCallback, fmi3ValueReference,
+};
 use crate::fmi::abi::arguments::{refuse, slice};
 use crate::fmi::abi::calls::instance_calls;
-use crate::fmi::abi::component::{Component, Handle, Instance};
+use crate::fmi::abi::component::{Component, Instance};
 use crate::fmi::abi::instantiation::{instantiate, texts};
-use crate::fmi::abi::intermediate::{Callback, IntermediateUpdate};
+use crate::fmi::abi::intermediate::IntermediateUpdate;
 use crate::fmi::abi::message::set_debug_logging;
 use crate::fmi::{Call, Category, CoSimulation, Error, Interface, Sink, Status, Version};
 
 /// `fmi3GetVersion`: always `"3.0"`.
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi3GetVersion() -> *const c_char {
+pub extern "C" fn fmi3GetVersion() -> fmi3String {
     c"3.0".as_ptr()
 }
 
@@ -22,8 +26,8 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 struct Arguments {
     call: &'static str,
     /// Name of the instance, instantiation token and path of the resources.
-    texts: [*const c_char; 3],
-    logging_on: bool,
+    texts: [fmi3String; 3],
+    logging_on: fmi3Boolean,
     logger: HostLogger,
 }
 
@@ -39,7 +43,7 @@ impl Arguments {
         interface: Interface,
         intermediate_update: Option<IntermediateUpdate>,
         agree: impl FnOnce(&mut Instance) -> Result<(), Error>,
-    ) -> Handle {
+    ) -> fmi3Instance {
         let make = || {
             let [name, token, path] = self.texts;
             let arguments = [
@@ -77,14 +81,14 @@ impl Arguments {
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateModelExchange(
-    instance_name: *const c_char,
-    instantiation_token: *const c_char,
-    resource_path: *const c_char,
-    _visible: bool,
-    logging_on: bool,
-    instance_environment: *mut c_void,
-    log_message: LogMessage,
-) -> Handle {
+    instance_name: fmi3String,
+    instantiation_token: fmi3String,
+    resource_path: fmi3String,
+    _visible: fmi3Boolean,
+    logging_on: fmi3Boolean,
+    instance_environment: fmi3InstanceEnvironment,
+    log_message: fmi3LogMessageCallback,
+) -> fmi3Instance {
     let arguments = Arguments {
         call: "fmi3InstantiateModelExchange",
         texts: [instance_name, instantiation_token, resource_path],
@@ -104,19 +108,19 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
-    instance_name: *const c_char,
-    instantiation_token: *const c_char,
-    resource_path: *const c_char,
-    _visible: bool,
-    logging_on: bool,
-    event_mode_used: bool,
-    early_return_allowed: bool,
-    required_intermediate_variables: *const u32,
+    instance_name: fmi3String,
+    instantiation_token: fmi3String,
+    resource_path: fmi3String,
+    _visible: fmi3Boolean,
+    logging_on: fmi3Boolean,
+    event_mode_used: fmi3Boolean,
+    early_return_allowed: fmi3Boolean,
+    required_intermediate_variables: *const fmi3ValueReference,
     n_required_intermediate_variables: usize,
-    instance_environment: *mut c_void,
-    log_message: LogMessage,
-    intermediate_update: Option<Callback>,
-) -> Handle {
+    instance_environment: fmi3InstanceEnvironment,
+    log_message: fmi3LogMessageCallback,
+    intermediate_update: fmi3IntermediateUpdateCallback,
+) -> fmi3Instance {
     let arguments = Arguments {
         call: "fmi3InstantiateCoSimulation",
         texts: [instance_name, instantiation_token, resource_path],
@@ -158,17 +162,17 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
-    instance_name: *const c_char,
-    instantiation_token: *const c_char,
-    resource_path: *const c_char,
-    _visible: bool,
-    logging_on: bool,
-    instance_environment: *mut c_void,
-    log_message: LogMessage,
-    _clock_update: Option<unsafe extern "C" fn(*mut c_void)>,
-    _lock_preemption: Option<unsafe extern "C" fn()>,
-    _unlock_preemption: Option<unsafe extern "C" fn()>,
-) -> Handle {
+    instance_name: fmi3String,
+    instantiation_token: fmi3String,
+    resource_path: fmi3String,
+    _visible: fmi3Boolean,
+    logging_on: fmi3Boolean,
+    instance_environment: fmi3InstanceEnvironment,
+    log_message: fmi3LogMessageCallback,
+    _clock_update: fmi3ClockUpdateCallback,
+    _lock_preemption: fmi3LockPreemptionCallback,
+    _unlock_preemption: fmi3UnlockPreemptionCallback,
+) -> fmi3Instance {
     let arguments = Arguments {
         call: "fmi3InstantiateScheduledExecution",
         texts: [instance_name, instantiation_token, resource_path],
@@ -186,7 +190,7 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
 ///
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeInstance(instance: Handle) {
+pub unsafe extern "C" fn fmi3FreeInstance(instance: fmi3Instance) {
     // SAFETY: the host's promise.
     unsafe { Component::take_back(instance) };
 }
@@ -194,19 +198,19 @@ pub unsafe extern "C" fn fmi3FreeInstance(instance: Handle) {
 instance_calls! {
     /// `fmi3SetDebugLogging`.
     fmi3SetDebugLogging(
-        logging_on: bool,
+        logging_on: fmi3Boolean,
         n_categories: usize,
-        categories: *const *const c_char,
+        categories: *const fmi3String,
     ) = |instance| {
         set_debug_logging(instance, logging_on, categories, n_categories)
     };
     /// `fmi3EnterInitializationMode`.
     fmi3EnterInitializationMode(
-        tolerance_defined: bool,
-        tolerance: f64,
-        start_time: f64,
-        stop_time_defined: bool,
-        stop_time: f64,
+        tolerance_defined: fmi3Boolean,
+        tolerance: fmi3Float64,
+        start_time: fmi3Float64,
+        stop_time_defined: fmi3Boolean,
+        stop_time: fmi3Float64,
     ) = |instance| {
         let stop_time = stop_time_defined.then_some(stop_time);
         instance.allow(Call::EnterInitializationMode)?;

@@ -9,3 +9,4 @@ mod lifecycle;
 mod stepping;
 #[cfg(test)]
 mod tests;
+mod types;

@@ -1,7 +1,8 @@
 //! Steps, with the host's intermediate update.
 
+use super::types::{fmi3Boolean, fmi3Float64, fmi3Instance, fmi3Status};
 use crate::fmi::abi::arguments::check_room;
-use crate::fmi::abi::component::{Component, Handle, StatusCode, with_instance};
+use crate::fmi::abi::component::{Component, with_instance};
 use crate::fmi::{Call, StepProgress};
 
 /// `fmi3DoStep`. Nothing is kept for going back, so that
@@ -15,15 +16,15 @@ use crate::fmi::{Call, StepProgress};
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(
-    instance: Handle,
-    current_communication_point: f64,
-    communication_step_size: f64,
-    _no_set_fmu_state_prior_to_current_point: bool,
-    event_handling_needed: *mut bool,
-    terminate_simulation: *mut bool,
-    early_return: *mut bool,
-    last_successful_time: *mut f64,
-) -> StatusCode {
+    instance: fmi3Instance,
+    current_communication_point: fmi3Float64,
+    communication_step_size: fmi3Float64,
+    _no_set_fmu_state_prior_to_current_point: fmi3Boolean,
+    event_handling_needed: *mut fmi3Boolean,
+    terminate_simulation: *mut fmi3Boolean,
+    early_return: *mut fmi3Boolean,
+    last_successful_time: *mut fmi3Float64,
+) -> fmi3Status {
     let mut progress = None;
     // SAFETY: the host's promise.
     let mut status = unsafe {

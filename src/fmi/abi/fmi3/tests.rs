@@ -8,6 +8,7 @@ use super::exchange::*;
 use super::fmu_state::*;
 use super::lifecycle::*;
 use super::stepping::*;
+use super::types::*;
 use crate::fmi::abi::component::{Component, status_code};
 use crate::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status, Version};
 use crate::mechanism::{Mechanism, Source};
@@ -54,6 +55,7 @@ impl Sink for Silent {
 macro_rules! check_signatures {
     ($($function:ident: $signature:ident,)*) => {
         $(const _: header::$signature = Some($function);)*
+        const FUNCTIONS: usize = [$(stringify!($function)),*].len();
     };
 }
 
@@ -133,6 +135,54 @@ check_signatures! {
     fmi3GetOutputDerivatives: fmi3GetOutputDerivativesTYPE,
     fmi3DoStep: fmi3DoStepTYPE,
     fmi3ActivateModelPartition: fmi3ActivateModelPartitionTYPE,
+}
+
+/// Checks at compile time that each type is that of the standard's header.
+macro_rules! check_types {
+    ($($name:ident,)*) => {
+        $(const _: fn($name) -> header::$name = |value| value;)*
+        const TYPES: usize = [$(stringify!($name)),*].len();
+    };
+}
+
+check_types! {
+    fmi3Instance,
+    fmi3InstanceEnvironment,
+    fmi3FMUState,
+    fmi3ValueReference,
+    fmi3Float32,
+    fmi3Float64,
+    fmi3Int8,
+    fmi3UInt8,
+    fmi3Int16,
+    fmi3UInt16,
+    fmi3Int32,
+    fmi3UInt32,
+    fmi3Int64,
+    fmi3UInt64,
+    fmi3Boolean,
+    fmi3Char,
+    fmi3String,
+    fmi3Byte,
+    fmi3Binary,
+    fmi3Clock,
+    fmi3Status,
+    fmi3DependencyKind,
+    fmi3IntervalQualifier,
+    fmi3LogMessageCallback,
+    fmi3ClockUpdateCallback,
+    fmi3LockPreemptionCallback,
+    fmi3UnlockPreemptionCallback,
+    fmi3IntermediateUpdateCallback,
+}
+
+/// No exported function and no type is left out of the comparisons.
+#[test]
+fn all_functions_and_types_are_compared() {
+    // `fmi3Functions.h` has 75.
+    assert_eq!(FUNCTIONS, 75);
+    let types = include_str!("types.rs").matches("\npub type ").count();
+    assert_eq!(TYPES, types);
 }
 
 #[test]

@@ -3,11 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
+use super::Loops;
 use super::form::{Angle, Closure, Form};
-use super::{Loops, MARGIN};
 use crate::kinematics::constraint::configuration::on_nearest_turn;
 use crate::kinematics::constraint::{Axis, Projection, Relation};
 use crate::kinematics::plan::BlockState;
+use crate::kinematics::tolerances::CERTAIN_GAP;
 use crate::mechanism::{Interval, MarkerId, Number};
 
 /// Bound of the error of unknowns found before, scaled.
@@ -49,7 +50,7 @@ impl<'a> Builder<'a> {
             .map_or(0.0, |&row| state.system.equations()[row].size(state.at));
         Self {
             state,
-            margin: MARGIN * size,
+            margin: CERTAIN_GAP * size,
             columns: columns.iter().copied().collect(),
             rows: rows.to_vec(),
             angles: BTreeMap::new(),

@@ -31,13 +31,11 @@ const MOST_TERMS: usize = 4_000_000;
 /// singular position.
 const NARROWEST: f64 = 1e-6;
 /// Largest width of a box for Krawczyk's test \[rad\].
-const NARROW: f64 = 1.0;
+const WIDEST_TESTED: f64 = 1.0;
 /// Part of its width by which a box is enlarged for that test: a solution may lie on its edge.
 const ENLARGED: f64 = 0.1;
 /// Largest difference of angles, in boxes known to hold one solution, that are the same solution.
-const SAME: f64 = 1e-7;
-/// Largest gap, scaled, that may be rounding.
-const MARGIN: f64 = 1e-10;
+const SAME_SOLUTION: f64 = 1e-7;
 
 /// The branches of a block.
 #[derive(Debug)]
@@ -129,7 +127,7 @@ impl Loops {
                 Content::One(found) => {
                     let same = |known: &Vec<f64>| {
                         let mut pairs = known.iter().zip(&found);
-                        pairs.all(|(a, b)| on_nearest_turn(a - b, 0.0).abs() < SAME)
+                        pairs.all(|(a, b)| on_nearest_turn(a - b, 0.0).abs() < SAME_SOLUTION)
                     };
                     if !solutions.iter().any(same) {
                         solutions.push(found);
@@ -164,7 +162,9 @@ impl Loops {
         if self.kept.is_empty() {
             return Content::One(Vec::new());
         }
-        let narrow = angles.iter().all(|angle| angle.high - angle.low < NARROW);
+        let narrow = angles
+            .iter()
+            .all(|angle| angle.high - angle.low < WIDEST_TESTED);
         let mut around: Vec<_> = angles
             .iter()
             .map(|angle| {

@@ -3,24 +3,24 @@
 use std::sync::Arc;
 
 use super::Run;
-use crate::kinematics::certificate::SMALLEST_SUBSTEP;
 use crate::kinematics::singular::CROSSING_END;
+use crate::kinematics::tolerances::SMALLEST_SUBSTEP;
 use crate::mechanism::DriverId;
 
-/// Least ratio of a sub-step to the rejected one before it: the certificate of a much too long
-/// sub-step gives no reliable ratio.
+/// Least ratio of a sub-step to the rejected one before it: the ratio that the certificate of a
+/// much too long sub-step suggests is not reliable.
 const LEAST_RATIO: f64 = 0.1;
-/// Ratio of a sub-step to the rejected one before it, without a ratio from the certificate.
+/// Ratio of a sub-step to the rejected one before it if the certificate suggests none.
 pub(super) const HALF: f64 = 0.5;
 /// Largest ratio of a sub-step to the accepted one before it.
 const LARGEST_RATIO: f64 = 4.0;
 /// Safety factor on the length that the certificate of another sub-step suggests.
-const ROOM: f64 = 0.85;
+const SAFETY: f64 = 0.85;
 /// [`SMALLEST_SUBSTEP`] of the first sub-step, which may lead away from a dead point, from as near as
 /// the motion came to it. The motion slows down there as it has come on.
 const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
-/// The same where the search is given up early: a pose that needs shorter ones is next to a singular
-/// position.
+/// Minimum sub-step of a search that gives up early: a pose that needs shorter ones is next to a
+/// singular position.
 const SMALLEST_WITHOUT_SEARCH: f64 = 1e-4;
 
 /// The end of a sub-step.
@@ -73,7 +73,7 @@ impl Run<'_> {
     pub(super) fn ratio_to_rejected(&self) -> Option<f64> {
         let ratio = self.bounds.step_ratio();
         let is_known = ratio.is_finite() && ratio > 1.0;
-        is_known.then(|| (ROOM / ratio.sqrt()).max(LEAST_RATIO))
+        is_known.then(|| (SAFETY / ratio.sqrt()).max(LEAST_RATIO))
     }
 
     /// Returns the length to try after a sub-step of length `h` was accepted. After a rejection
@@ -85,7 +85,7 @@ impl Run<'_> {
         } else {
             LARGEST_RATIO
         };
-        h * (ROOM / self.bounds.step_ratio().sqrt()).min(largest)
+        h * (SAFETY / self.bounds.step_ratio().sqrt()).min(largest)
     }
 
     /// Returns an end of the sub-step, no further than `end`, up to which a driver moves by `most`

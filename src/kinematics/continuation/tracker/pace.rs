@@ -5,7 +5,7 @@ const MOST_SUBSTEPS: f64 = 100_000.0;
 /// The same for a mechanism of any size.
 const FEWEST_SUBSTEPS: f64 = 1_000.0;
 /// Most work of a path between these limits, in that of one row in closed form: about a second.
-const MOST_WORK: f64 = 5e7;
+const WORK_OF_PATH: f64 = 5e7;
 /// The work of bounding the numbers of a row at each sub-step, while parameters move.
 const WORK_OF_NUMBERS: f64 = 10.0;
 /// The work of checking a cam's profile at each sub-step, while parameters move it.
@@ -68,5 +68,5 @@ pub(in crate::kinematics) fn most_substeps(work: f64, moved: Option<[usize; 2]>)
     let of_moved = moved.map_or(0.0, |[rows, profiles]| {
         WORK_OF_NUMBERS * rows as f64 + WORK_OF_PROFILE * profiles as f64
     });
-    (MOST_WORK / (work + of_moved)).clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS)
+    (WORK_OF_PATH / (work + of_moved)).clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS)
 }

@@ -20,25 +20,30 @@
 //! [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
 
 use super::CoupledBlock;
-use super::contraction::{ContractionTest, LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY};
-use crate::kinematics::newton::{AT_ROUNDING, Rejected};
+use super::contraction::{
+    ContractionTest, LARGER_RADII, LARGEST_CONTRACTION, MOST_TRIES, STRICTLY,
+};
+use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::step::{BlockState, Step};
 use crate::kinematics::system::Target;
+use crate::kinematics::tolerances::AT_ROUNDING;
 
 /// First trial radii, as a multiple of the square of the largest move of an unknown: a motion that
 /// turns by φ deviates from its chord by φ²/8 in radians, and rarely by twenty times that.
 const FIRST_RADIUS: f64 = 2.5;
-/// Their least and largest part of that move.
+/// Least and largest ratio of the first trial radii to that move.
 const FIRST_PART: [f64; 2] = [0.1, 0.2];
-/// Second trial radii where the first are too large, as a multiple of η.
+/// Second trial radii, as a multiple of η, if the first ones are too large.
 const SMALLER_RADIUS: f64 = 2.0;
 /// The norm of K that the next sub-step aims at.
 const GOOD_CONTRACTION: f64 = 0.6;
 
 impl CoupledBlock {
-    /// Notes residuals and angles at the start of the sub-step and, for a block without an inverse,
-    /// the effect of moving parameters on its rows. The block was evaluated last at the start; its
-    /// unknowns are there, earlier ones at their ends.
+    /// Stores the residuals and angles at the start of the sub-step and, for a block without an
+    /// inverse, the effect of moving parameters on its rows.
+    ///
+    /// Before: the block was evaluated last at the start of the sub-step, where its own unknowns
+    /// still are; upstream unknowns are at the end.
     pub(super) fn note_start(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.start_excess = self.excess;
         let bodies = 3 * state.system.mechanism().bodies.len();
@@ -59,7 +64,8 @@ impl CoupledBlock {
         }
     }
 
-    /// Notes twice the values that rows have at the start for the numbers at the end.
+    /// Stores 2 |c(q at the start) − target| of each row with the parameters at the end of the
+    /// sub-step, for rows that have no enclosure.
     #[cold]
     fn note_moved(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.test.note_ends(state);
@@ -90,12 +96,6 @@ impl CoupledBlock {
         state: &mut BlockState<'_>,
         step: &mut Step<'_>,
     ) -> Result<(), Rejected> {
-        let holds = step.bounds.may_reuse
-            && (self.certify_in_tubes(state, step) || self.certify_in_segment(state, step));
-        if holds {
-            self.write_bounds(state, step);
-            return Ok(());
-        }
         self.test.note_ends(state);
         let tried = if self.test.inverse.is_empty() {
             self.estimate_radii(state, step)
@@ -104,7 +104,7 @@ impl CoupledBlock {
         };
         self.test.return_to_ends(state);
         self.clear_region(step);
-        // Chord and radii grow together: K grows rather with the square of the sub-step.
+        // Chord and radii both grow with the sub-step, so K grows about as its square.
         let step_ratio = |contraction: f64| contraction / GOOD_CONTRACTION;
         let contraction = match tried {
             Ok(contraction) => contraction,
@@ -117,13 +117,6 @@ impl CoupledBlock {
             }
         };
         self.write_bounds(state, step);
-        if step.bounds.may_reuse {
-            if self.test.inverse.is_empty() {
-                self.lay_segment(state, step, contraction);
-            } else {
-                self.make_tube(state, step, contraction);
-            }
-        }
         step.bounds.require(step_ratio(contraction).min(1.0))
     }
 
@@ -134,7 +127,7 @@ impl CoupledBlock {
     }
 
     /// Clears the region and the chord in the work space.
-    pub(super) fn clear_region(&self, step: &mut Step<'_>) {
+    fn clear_region(&self, step: &mut Step<'_>) {
         for &column in self.equations.columns.iter().chain(&self.test.known) {
             step.bounds.region[column] = 0.0;
             step.bounds.chord[column] = 0.0;
@@ -172,12 +165,12 @@ impl CoupledBlock {
         }
     }
 
-    /// Looks for radii that pass the test and leaves the smallest ones found in `next`. Returns
-    /// the norm of K for them.
+    /// Looks for radii that pass the test and writes the smallest ones found to `next`. Returns the
+    /// norm of K for them.
     ///
     /// # Errors
     ///
-    /// Without such radii the norm of K, if it is known.
+    /// The norm of K, if it is known, where no radii pass the test.
     fn find_radii(
         &mut self,
         state: &mut BlockState<'_>,
@@ -186,7 +179,7 @@ impl CoupledBlock {
         let first = self.lay_chord(state, step);
         let columns = self.equations.columns.iter();
         for (radius, &column) in self.test.radii.iter_mut().zip(columns) {
-            // The scale of an unknown in the block as a part of that in its part of the mechanism.
+            // Lengths scale with the block's arms, not with the whole part of the mechanism.
             let is_angle = state.system.is_angle(column);
             *radius = if is_angle { first } else { first * self.length };
         }
@@ -210,7 +203,7 @@ impl CoupledBlock {
                 if shrunk {
                     return Err(Some(contraction));
                 }
-                // Far smaller ones do where the motion is nearly straight.
+                // Far smaller radii are enough where the motion is nearly straight.
                 shrunk = true;
                 for (radius, eta) in test.radii.iter_mut().zip(&test.eta) {
                     *radius = radius.min((SMALLER_RADIUS * eta).max(f64::EPSILON * *radius));
@@ -219,7 +212,7 @@ impl CoupledBlock {
             }
             last = Some(contraction);
             for (radius, next) in test.radii.iter_mut().zip(&test.next) {
-                *radius = radius.max(ROOM * next / (1.0 - contraction));
+                *radius = radius.max(LARGER_RADII * next / (1.0 - contraction));
             }
         }
         Err(Some(1.0))
@@ -301,8 +294,8 @@ impl CoupledBlock {
         test.eta = eta;
     }
 
-    /// Writes η + K r to `next`, with the trial radii or else `next` itself as r. Returns the norm
-    /// of K, weighted by the trial radii.
+    /// Writes η + K r to `next`; r are the trial radii if `tried`, otherwise the present `next`.
+    /// Returns the norm of K, weighted by the trial radii.
     fn contract(&mut self, tried: bool) -> f64 {
         let test = &mut *self.test;
         let mut row = std::mem::take(&mut test.row);

@@ -5,18 +5,18 @@ use crate::kinematics::constraint::configuration::BodyPose;
 use crate::kinematics::linear::{Condition, Lu};
 use crate::kinematics::plan::elimination::EliminationOrder;
 use crate::kinematics::plan::step::BlockState;
-use crate::kinematics::system::{System, Target};
+use crate::kinematics::system::System;
 
-/// Most torn unknowns of which the inverse is written down.
+/// Most torn unknowns of a block whose inverse A is computed entry by entry.
 pub(super) const MOST_TORN: usize = 32;
 /// Safety factor on the next trial radii, where those tried were too small.
-pub(super) const ROOM: f64 = 1.25;
+pub(super) const LARGER_RADII: f64 = 1.25;
 /// Most radii that are tried.
 pub(super) const MOST_TRIES: u32 = 4;
-/// The norm of K above which no larger radii are tried, but smaller ones once. K grows with the
-/// sub-step.
+/// Norm of K above which larger radii cannot pass: smaller ones are tried once, then the sub-step
+/// is rejected.
 pub(super) const LARGEST_CONTRACTION: f64 = 0.9;
-/// η + K r stays below this part of r: the rounding of A changes it by less than the rest.
+/// Largest accepted ratio of η + K r to r. The rounding of A changes the ratio by less than 0.001.
 pub(super) const STRICTLY: f64 = 0.999;
 
 /// Storage of the contraction test of a block.
@@ -24,31 +24,29 @@ pub(super) const STRICTLY: f64 = 0.999;
 pub(super) struct ContractionTest {
     /// Unknowns of earlier blocks in the rows.
     pub(super) known: Vec<usize>,
-    /// Drivers whose values rows of the block are held at.
-    pub(super) drivers: Vec<usize>,
-    /// The bodies of these and of the block's own unknowns, with their frames at the end.
+    /// Bodies with unknowns in the rows, and their frames at the end of the sub-step.
     bodies: Vec<usize>,
     ends: Vec<BodyPose>,
-    /// The joint unknowns among them, with their values at the end.
+    /// Joint unknowns in the rows, and their values at the end of the sub-step.
     joint_unknowns: Vec<usize>,
     joint_ends: Vec<f64>,
     /// The Jacobian in the middle of the chord.
     pub(super) middle: Jacobian,
-    /// A by rows, empty where it is too large.
+    /// A, row by row; empty if the block is too large for it.
     pub(super) inverse: Vec<f64>,
-    /// Storage of the estimate, where A is too large.
+    /// Storage of the estimate, used where `inverse` is empty.
     pub(super) estimate: Estimate,
     pub(super) condition: Condition,
-    /// Bound of the rows' values on the way, and the part of it from rounding.
+    /// Bound of each row's value on the chord, and the part of it that is rounding.
     pub(super) open: Vec<f64>,
     pub(super) slack: Vec<f64>,
     /// Whether parameters move numbers in the rows.
     pub(super) moves: bool,
-    /// Estimate of the values of rows of a block without an inverse while parameters move.
+    /// Estimate of each row's value on the chord while parameters move, if `inverse` is empty.
     pub(super) moved: Vec<f64>,
     /// Bounds of the change of the Jacobian's entries: row, column, scaled value.
     pub(super) changes: Vec<(usize, usize, f64)>,
-    /// Scaled radii: of known unknowns, the trial radii r, and η + K r.
+    /// Scaled: radii of `known`, trial radii r, η, and η + K r.
     pub(super) known_radii: Vec<f64>,
     pub(super) radii: Vec<f64>,
     pub(super) eta: Vec<f64>,
@@ -107,11 +105,6 @@ impl ContractionTest {
         bodies.sort_unstable();
         bodies.dedup();
         let joint_unknowns: Vec<_> = moving().filter(|&k| k >= of_bodies).collect();
-        let drivers = order.rows.iter();
-        let drivers = drivers.filter_map(|&row| match system.equations()[row].target {
-            Target::Driver(driver) => Some(driver.index()),
-            Target::Constant(_) => None,
-        });
         let (inverse, estimate) = if order.torn() <= MOST_TORN {
             (n * n, Estimate::default())
         } else {
@@ -125,7 +118,6 @@ impl ContractionTest {
         Self {
             known_radii: vec![0.0; known.len()],
             known,
-            drivers: drivers.collect(),
             ends: Vec::with_capacity(bodies.len()),
             bodies,
             joint_ends: vec![0.0; joint_unknowns.len()],

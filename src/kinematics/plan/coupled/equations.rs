@@ -14,12 +14,12 @@ use crate::mechanism::Interval;
 /// Most entries of a row: of three bodies and one joint unknown.
 pub(super) const ENTRIES: usize = 10;
 
-/// The block that finds an unknown, the index of the unknown in that block, and its scale.
+/// Block that solves an unknown, index of the unknown in that block, and its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::kinematics::plan) struct ColumnOwner {
     pub(super) block: usize,
     local: usize,
-    /// [Part](System::column_part) of the mechanism's size that scales the unknown.
+    /// [Part](System::column_part) of the mechanism's size by which the unknown is scaled.
     part: Option<f64>,
 }
 
@@ -153,9 +153,10 @@ impl BlockEquations {
         }
     }
 
-    /// Bounds the bend of a row along the chord of `bounds` ([`Constraint::bend`]) in the region of
-    /// their radii around the pose in `state` or, `on_chord`, around all of the chord, whose middle
-    /// the pose is. `None` if the row is not smooth there.
+    /// Bounds the bend of a row along the chord of `bounds` ([`Constraint::bend`]). The bound holds
+    /// in a region: the radii of `bounds` around the pose in `state` or, if `on_chord`, around the
+    /// whole chord, of which that pose is the middle. Returns `None` if the row is not smooth
+    /// there.
     ///
     /// [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
     pub(super) fn bend(
@@ -183,7 +184,7 @@ impl BlockEquations {
     }
 
     /// Bounds the bend of a row on the chord of `bounds` and around it; the pose in `state` is in
-    /// the middle of the chord. `None` if the row is not smooth there.
+    /// the middle of the chord. Returns `None` if the row is not smooth there.
     pub(super) fn bend_on_chord(
         &self,
         local: usize,
@@ -197,7 +198,8 @@ impl BlockEquations {
         self.enclosed_bend(local, state, &mut bounds.parameters)
     }
 
-    /// Bounds the bend of a row while parameters move its numbers. `None` if it has no enclosure.
+    /// Bounds the bend of a row while parameters move its numbers. Returns `None` if it has no
+    /// enclosure.
     #[cold]
     fn enclosed_bend(
         &self,

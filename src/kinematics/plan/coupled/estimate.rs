@@ -1,57 +1,50 @@
 //! The estimate that replaces the certificate of a block whose inverse is too large to be written
 //! down.
 //!
-//! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds only the change of
-//! the Jacobian within the radii, which are of second order in the sub-step. Its change along the
-//! chord only tells how much larger A(s) may be than A = J⁻¹ at the end of the sub-step:
+//! The certificate takes A in the middle of the chord; here A(s) is the inverse of the Jacobian at
+//! each place s of the chord. K then contains only the change of the Jacobian within the radii,
+//! which are of second order in the sub-step. A(s) itself is not computed: A = J⁻¹ at the end of
+//! the sub-step bounds it by
 //!
 //! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J)|, in the largest norm.
 //!
-//! The links of a long row of loops all turn alike: their changes in A J have signs and cancel,
-//! while bounds of them would add up with the square of the row's length. So c comes from the
-//! Jacobian itself where it differs most, at the far end of the chord, and the values of the rows
-//! on the chord come from their values in its middle. One radius r serves all unknowns, and the
-//! test is
+//! In a long row of loops all links turn alike. The signed changes of A J then cancel, but their
+//! bounds would add up with the square of the row's length. Therefore c is computed from the
+//! Jacobian at the far end of the chord, where it differs most, and the values of the rows on the
+//! chord are taken from the middle of the chord. All unknowns share one radius r. The test is
 //!
 //! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all other bounds of the rows).
 //!
-//! Norms are estimated from below, and one place represents the whole chord. The factor [`MARGIN`]
-//! allows for both, and the sub-step is *checked*, not proved.
+//! Two things are not bounds: norms are estimated from below, and one place represents the whole
+//! chord. The factor [`SAFETY`] allows for both. The sub-step is *checked*, not proved.
 //!
-//! A contour may have a lobe or a notch anywhere between two places. The rows that depend on one
-//! are bounded over the whole chord: an eighth of the second derivative along it is the value that
-//! it leaves them, and their gradients differ from those at its end by at most twice their change
-//! around its middle.
+//! A contour may have a lobe or a notch between two places, so rows that depend on a contour are
+//! bounded over the whole chord. Their values on the chord are at most an eighth of the bound of
+//! the second derivative along it. Their gradients differ from those at its end by at most twice
+//! the bound of their change around its middle.
 
 use super::CoupledBlock;
 use super::contraction::{
-    ContractionTest, Estimate, LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY,
+    ContractionTest, Estimate, LARGER_RADII, LARGEST_CONTRACTION, MOST_TRIES, STRICTLY,
 };
 use crate::kinematics::linear::{Factors, nan_or_larger};
-use crate::kinematics::newton::STALLED;
 use crate::kinematics::plan::step::{BlockState, Step};
 use crate::kinematics::system::Target;
+use crate::kinematics::tolerances::STALLED;
 
 /// Safety factor on estimates.
-const MARGIN: f64 = 2.0;
-
-/// The result of a test that was passed.
-pub(super) struct Passed {
-    /// r, and the radius of the motion around the chord, both scaled.
-    pub(super) radius: f64,
-    pub(super) next: f64,
-    /// The sum of c and the norm of K.
-    pub(super) contraction: f64,
-}
+const SAFETY: f64 = 2.0;
 
 impl CoupledBlock {
-    /// Looks for a radius that passes the test and leaves it in `next`. Returns the sum of c and
-    /// the norm of K. Moves the bodies from the end of the sub-step, where the block is factorised,
-    /// to its middle.
+    /// Looks for a radius that passes the test and writes it to `next`. Returns the sum of c and
+    /// the norm of K.
+    ///
+    /// Before: the bodies are at the end of the sub-step, where the block is factorised. After:
+    /// they are in the middle of the chord.
     ///
     /// # Errors
     ///
-    /// Without such a radius the sum of c and the norm of K, if they are known.
+    /// The sum of c and the norm of K, if they are known, where no radius passes the test.
     pub(super) fn estimate_radii(
         &mut self,
         state: &mut BlockState<'_>,
@@ -61,28 +54,7 @@ impl CoupledBlock {
         self.lay_chord(state, step);
         self.move_to_chord(state, step, 0.0);
         self.evaluate_rows(state);
-        let drift = self.drift();
-        let passed = self.test_chord(state, step, [drift, 0.0], ROOM)?;
-        self.test.next.fill(passed.next);
-        Ok(passed.contraction)
-    }
-
-    /// Tests the chord of `step` and moves the bodies to its middle. `drift` is the norm of A times
-    /// the change of the Jacobian at the far end of the chord, `astray` a bound of the distance of
-    /// that end from the motion, scaled; the first trial radius is `room` times the distance of
-    /// the chord from the motion.
-    ///
-    /// # Errors
-    ///
-    /// If the test fails, the sum of c and the norm of K, if they are known.
-    pub(super) fn test_chord(
-        &mut self,
-        state: &mut BlockState<'_>,
-        step: &mut Step<'_>,
-        [drift, astray]: [f64; 2],
-        room: f64,
-    ) -> Result<Passed, Option<f64>> {
-        let drift = MARGIN * drift;
+        let drift = SAFETY * self.drift();
         if drift.is_nan() {
             return Err(None);
         }
@@ -96,8 +68,8 @@ impl CoupledBlock {
             *slack += rounding + moved;
         }
         let larger = 1.0 / (1.0 - drift);
-        let gap = larger * MARGIN * (self.farthest() + astray);
-        let mut radius = room * gap + f64::EPSILON;
+        let gap = larger * SAFETY * self.farthest();
+        let mut radius = LARGER_RADII * gap + f64::EPSILON;
         let mut last = None;
         for _ in 0..MOST_TRIES {
             let [open, change] = self.bend_around(state, step, radius).ok_or(last)?;
@@ -107,24 +79,21 @@ impl CoupledBlock {
                 return Err(None);
             }
             if next <= STRICTLY * radius {
-                return Ok(Passed {
-                    radius,
-                    next,
-                    contraction,
-                });
+                self.test.next.fill(next);
+                return Ok(contraction);
             }
             if contraction >= LARGEST_CONTRACTION {
                 return Err(Some(contraction));
             }
             last = Some(contraction);
-            radius = ROOM * next / (1.0 - contraction);
+            radius = LARGER_RADII * next / (1.0 - contraction);
         }
         Err(Some(1.0))
     }
 
     /// Evaluates the rows at the pose in `state` without touching the factors; bounds of their
     /// rounding go to `row`.
-    pub(super) fn evaluate_rows(&mut self, state: &BlockState<'_>) {
+    fn evaluate_rows(&mut self, state: &BlockState<'_>) {
         let Self {
             equations, test, ..
         } = self;
@@ -147,7 +116,7 @@ impl CoupledBlock {
     }
 
     /// Returns the norm of A times the change of the Jacobian where the rows were evaluated last.
-    pub(super) fn drift(&mut self) -> f64 {
+    fn drift(&mut self) -> f64 {
         let ContractionTest {
             condition,
             middle,
@@ -160,7 +129,7 @@ impl CoupledBlock {
     }
 
     /// Returns the largest component of A F where the rows were evaluated last.
-    pub(super) fn farthest(&mut self) -> f64 {
+    fn farthest(&mut self) -> f64 {
         let gap = &mut self.test.estimate.gap;
         self.jacobian.lu.solve(gap);
         gap.iter()
@@ -239,6 +208,6 @@ impl CoupledBlock {
             ..
         } = &mut **test;
         let lu = &mut jacobian.lu;
-        Some([&*open, &*row].map(|b| MARGIN * condition.largest_row(lu, b)))
+        Some([&*open, &*row].map(|b| SAFETY * condition.largest_row(lu, b)))
     }
 }

@@ -1,17 +1,14 @@
-//! The estimate for large blocks accepts no step onto another branch; tubes serve turn by turn.
+//! The estimate for large blocks accepts no step onto another branch.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::kinematics::certificate::{Pivots, StepBounds};
-use crate::kinematics::path::Curve;
 use crate::kinematics::plan::{BlockSolver, BlockState, Extrapolation, SolveBlock, Step};
+use crate::kinematics::reference::assembled;
 use crate::kinematics::reference::generated::{BAR, scissor_lift};
-use crate::kinematics::reference::{assembled, shipped};
 use crate::kinematics::solver::Solver;
 use crate::mechanism::Source;
 
-/// Most cells with which the one block has no more than 32 torn unknowns.
-const MOST_PROVED_CELLS: usize = 16;
 /// Number of cells with which the one block has more than 32 torn unknowns.
 const CELLS: usize = 20;
 
@@ -43,7 +40,7 @@ fn accepts(solver: &mut Solver, from: (f64, &[f64; CELLS]), to: (f64, &[f64; CEL
     state.pose.drivers[0] = low;
     state.move_to_pose(&compiled.system);
     let mut bounds = StepBounds::new(&compiled.system);
-    bounds.begin(false);
+    bounds.begin();
     bounds.drivers[0] = f64::EPSILON * (low + high);
     let mut state = BlockState {
         drivers: &[high],
@@ -130,75 +127,4 @@ fn no_step_leads_onto_another_branch() {
     }
     // Short steps on the branch itself are accepted.
     assert!(right >= 8 && wrong > 200, "{right} {wrong}");
-}
-
-/// Returns the number of tubes that all blocks keep.
-fn kept_tubes(solver: &Solver) -> usize {
-    let blocks = solver.compiled.plan.blocks.iter();
-    let coupled = blocks.filter_map(|block| match block {
-        BlockSolver::CoupledBlock(block) => Some(block.tubes.count()),
-        _ => None,
-    });
-    coupled.sum()
-}
-
-#[test]
-fn later_turns_take_the_tubes_of_the_first_one() {
-    for name in ["cam_roller", "cam_flat", "cam_knife"] {
-        let (mut solver, mut path) = assembled(&shipped(name));
-        let start = solver.pose().drivers[0];
-        let mut turn = |degrees: &mut dyn Iterator<Item = u32>| {
-            for degree in degrees {
-                let now = solver.pose().drivers[0];
-                let angle = start + f64::from(degree).to_radians();
-                path.curves[0] = Curve::held(angle, now);
-                let progress = solver.track(&path).expect("a cam turns");
-                assert_eq!(
-                    (progress.substeps, progress.checked),
-                    (1, 0),
-                    "{name} at {degree}"
-                );
-            }
-            kept_tubes(&solver)
-        };
-        // The last tube of the first turn reaches into the second one.
-        let first = turn(&mut (1..=380));
-        assert!((20..200).contains(&first), "{name}: {first} tubes");
-        assert_eq!(turn(&mut (381..3600)), first, "{name} goes on");
-        assert_eq!(turn(&mut (0..3599).rev()), first, "{name} comes back");
-    }
-}
-
-/// Small moves at the bottom of a lift make large ones of its upper bars, so that its tubes are
-/// short; one for each step would cost more than none.
-#[test]
-fn a_tube_of_a_lift_serves_several_steps() {
-    for cells in [4, 8, MOST_PROVED_CELLS] {
-        let (mut solver, mut path) = assembled(&Source::new("lift", scissor_lift(cells)));
-        let height = |step: u32| cells as f64 * BAR * (FRAC_PI_6 + 5e-5 * f64::from(step)).sin();
-        // The block that makes tubes as it moves.
-        let place = |solver: &Solver| {
-            let blocks = solver.compiled.plan.blocks.iter();
-            let coupled = blocks.filter_map(|block| match block {
-                BlockSolver::CoupledBlock(block) => Some(block),
-                _ => None,
-            });
-            let largest = coupled.max_by_key(|block| block.equations.columns.len());
-            largest.expect("cells are coupled").tubes.next_place()
-        };
-        let steps = 60;
-        let mut made = 0;
-        for step in 1..=steps {
-            let before = place(&solver);
-            let now = solver.pose().drivers[0];
-            path.curves[0] = Curve::held(height(step), now);
-            let progress = solver.track(&path).expect("a lift rises");
-            assert_eq!((progress.substeps, progress.checked), (1, 0), "{cells}");
-            made += u32::from(place(&solver) != before);
-        }
-        assert!(
-            (1..=steps / 3).contains(&made),
-            "{cells} cells: {made} tubes"
-        );
-    }
 }

@@ -34,9 +34,7 @@ use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::anchor::Anchor;
 use crate::kinematics::plan::step::{BlockState, Step};
 use crate::kinematics::system::Target;
-
-/// Uncertain points that open f by no more than this part are added without their directions.
-const NEGLIGIBLE: f64 = 0.01;
+use crate::kinematics::tolerances::WITHOUT_DIRECTION;
 
 /// The start of a sub-step.
 pub(super) struct Before {
@@ -258,7 +256,7 @@ impl RrpDyad {
                 uncertain += anchor.uncertainty(known.bounds);
             }
         }
-        if bases == 0.0 || uncertain <= NEGLIGIBLE * open {
+        if bases == 0.0 || uncertain <= WITHOUT_DIRECTION * open {
             open + bases
         } else {
             open + bases.min(self.deviation_along_axis(axis_turn, known))

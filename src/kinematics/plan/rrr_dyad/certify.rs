@@ -51,11 +51,10 @@ use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::anchor::larger;
 use crate::kinematics::plan::anchor_path::{AnchorPath, Arm, PathKind};
 use crate::kinematics::plan::step::BlockState;
+use crate::kinematics::tolerances::WITHOUT_DIRECTION;
 
-/// An uncertain angle that adds no more than this part to the gap is added without its direction.
-const NEGLIGIBLE: f64 = 0.01;
 /// Rounding of an arm at both ends, as a part of its length.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const ARM_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Returns the distance of a vector that turns by `turn` from `from` to `to` from the middle
 /// between them, up to terms of fourth order.
@@ -148,7 +147,7 @@ impl RrrDyad {
                 gap += 0.5 * swung * bound.angle_deviation;
                 continue;
             }
-            if swung <= NEGLIGIBLE * gap {
+            if swung <= WITHOUT_DIRECTION * gap {
                 gap += swung;
                 continue;
             }
@@ -296,7 +295,7 @@ impl Loop {
             let gap = between[end] + links[end][0] - links[end][1];
             gap.x.abs() + gap.y.abs()
         });
-        larger(start, end) + ROUNDING * lengths
+        larger(start, end) + ARM_ROUNDING * lengths
     }
 
     /// Bounds the effect of the uncertain angles of pairs on the angles of both links \[rad\].
