@@ -30,7 +30,7 @@ mod tests;
 
 use nalgebra::Vector2;
 
-pub(super) use parameters::{Change, LARGEST_JUMP, ParameterBounds, SMALLEST_SUBSTEP};
+pub(super) use parameters::{Change, LARGEST_JUMP, ParameterBounds};
 
 use super::system::System;
 use crate::kinematics::newton::Rejected;
