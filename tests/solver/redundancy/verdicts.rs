@@ -162,7 +162,10 @@ fn free_bodies_and_surplus_drivers_are_named() {
             parallelogram(&[[0.2, 0.1]], 60.0, false),
             Says(
                 "the mechanism has 1 degree of freedom and no driver; free to move: body `crank`, \
-                 body `rocker`, body `crank_5`, body `coupler`: add a driver for one of them",
+                 body `rocker`, body `crank_5`, body `coupler`: add a driver for one of them; \
+                 `turn = { coordinate = \"angle\", markers = [\"ground.O2\", \"crank.O\"] }` under \
+                 `[drivers]`, with a `start` or a `motion`, drives it, and under `[freedoms]` the \
+                 forces move it",
             ),
         ),
         (
@@ -173,7 +176,9 @@ fn free_bodies_and_surplus_drivers_are_named() {
             Says(
                 "the mechanism has 2 degrees of freedom and 1 driver; free to move: body \
                  `right_arm`, body `left_forearm`, body `right_forearm`: add a driver for one of \
-                 them",
+                 them; `turn = { coordinate = \"angle\", markers = [\"ground.right\", \
+                 \"right_arm.motor\"] }` under `[drivers]`, with a `start` or a `motion`, drives \
+                 it, and under `[freedoms]` the forces move it",
             ),
         ),
         (
