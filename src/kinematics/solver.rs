@@ -254,8 +254,8 @@ impl Solver {
     /// Returns whether the bodies are where they are at another pose, apart from rounding.
     #[must_use]
     pub fn is_near(&self, pose: &Pose) -> bool {
-        let turns = self.state.whole_turns_since(&self.compiled.system, pose);
-        turns.is_some_and(|turns| turns.iter().all(|turns| *turns == 0.0))
+        let mut turns = self.state.whole_turns_since(&self.compiled.system, pose);
+        turns.all(|turns| turns == Some(0.0))
     }
 
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates

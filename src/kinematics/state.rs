@@ -360,11 +360,15 @@ impl State {
     }
 
     /// Returns the whole turns of each unknown from a pose to the present one, zero for places;
-    /// `None` unless the poses are the same apart from whole turns.
-    pub(super) fn whole_turns_since(&self, system: &System, before: &Pose) -> Option<Vec<f64>> {
+    /// `None` for one that is elsewhere.
+    pub(super) fn whole_turns_since(
+        &self,
+        system: &System,
+        before: &Pose,
+    ) -> impl Iterator<Item = Option<f64>> {
         let size = self.at.size();
         let unknowns = self.pose.q.iter().zip(&before.q).enumerate();
-        let turns = unknowns.map(|(column, (&now, &before))| {
+        unknowns.map(move |(column, (&now, &before))| {
             let difference = system.difference(column, size, now, before);
             let turns = if system.is_angle(column) {
                 ((now - before) / TAU).round()
@@ -372,8 +376,7 @@ impl State {
                 0.0
             };
             (difference.abs() < SAME_PLACE).then_some(turns)
-        });
-        turns.collect()
+        })
     }
 
     /// Returns the numbers in the equations at the present places of the bodies.

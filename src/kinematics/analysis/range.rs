@@ -273,8 +273,8 @@ impl Explorer<'_> {
             } else if count.is_multiple_of(per_turn) {
                 let turns = count / per_turn;
                 let system = &self.compiled.system;
-                let turned = self.state.whole_turns_since(system, self.start);
-                if end.is_none() && turned.is_some() {
+                let mut turned = self.state.whole_turns_since(system, self.start);
+                if end.is_none() && turned.all(|turns| turns.is_some()) {
                     return End::Turns(turns);
                 }
                 if turns >= self.settings.turns {

@@ -240,7 +240,9 @@ impl Journey<'_> {
             state,
             ..
         } = self;
-        let once = state.whole_turns_since(system, before)?;
+        let once: Vec<f64> = state
+            .whole_turns_since(system, before)
+            .collect::<Option<_>>()?;
         if !self.crosses_alike(before) {
             return None;
         }
