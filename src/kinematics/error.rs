@@ -10,7 +10,7 @@ use crate::mechanism::{ProfileError, show_time, shown, shown_apart};
 #[non_exhaustive]
 pub enum Error {
     /// More or less is driven than is free to move.
-    #[error("{}", structure_message(*.freedom, *.drivers, *.free, .loose, .slots, .excess, .line.as_deref()))]
+    #[error("{}", structure_message(*.freedom, *.drivers, *.free, .loose, .remedy, .excess))]
     Structure {
         /// Degrees of freedom that joints and constraints leave.
         freedom: usize,
@@ -20,10 +20,8 @@ pub enum Error {
         free: usize,
         /// The bodies that can move though no driver does: kind and name of each.
         loose: Vec<String>,
-        /// Slots on whose points one of these bodies may only turn: kind and name of each.
-        slots: Vec<String>,
-        /// A line for one of them in the mechanism file.
-        line: Option<String>,
+        /// What may be meant.
+        remedy: Box<Remedy>,
         /// Drivers of which one is too many, or joints and constraints that hold a coordinate that
         /// a driver drives: kind and name of each.
         excess: Vec<String>,
@@ -296,6 +294,16 @@ fn contradiction_message(origins: &[String], open: &OpenJoint) -> String {
     }
 }
 
+/// What may be meant by a mechanism whose drivers do not match its degrees of freedom.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remedy {
+    /// Slots on whose points a body that is free to move may only turn, perhaps none: kind and name
+    /// of each.
+    Slots(Vec<String>),
+    /// A coordinate of a body that is free to move, as a line of the mechanism file.
+    Line(String),
+}
+
 /// A joint, constraint or driver that cannot be satisfied together with the rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenJoint {
@@ -461,9 +469,8 @@ fn structure_message(
     drivers: usize,
     free: usize,
     loose: &[String],
-    slots: &[String],
+    remedy: &Remedy,
     excess: &[String],
-    line: Option<&str>,
 ) -> String {
     let count = |number: usize, singular: &str, plural: &str| match number {
         0 => format!("no {singular}"),
@@ -483,7 +490,9 @@ fn structure_message(
         };
         message += &format!("; free to move: {}: {add}", list(loose, ", "));
     }
-    if !slots.is_empty() {
+    if let Remedy::Slots(slots) = remedy
+        && !slots.is_empty()
+    {
         message += &format!(
             "; a `slot` holds a point, `translational` the angle too: {}",
             list(slots, ", ")
@@ -492,7 +501,7 @@ fn structure_message(
     if !excess.is_empty() {
         message += &format!("; too many: remove one of {}", list(excess, ", "));
     }
-    if let Some(line) = line {
+    if let Remedy::Line(line) = remedy {
         message += &format!(
             "; `{line}` under `[drivers]`, with a `start` or a `motion`, drives it, and under \
              `[freedoms]` the forces move it"

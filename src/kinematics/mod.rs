@@ -80,7 +80,7 @@ pub use constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
 pub use continuation::{Blocked, Progress, Reason};
-pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Verdict};
+pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Remedy, Verdict};
 pub use forces::{
     EquationsOfMotion, ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff,
     Reported,

@@ -43,6 +43,11 @@ OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 # The program
 
 
+def state_names(description) -> list[str]:
+    """Returns the names of the continuous states, in their order."""
+    return [unknown.variable.derivative.name for unknown in description.derivatives]
+
+
 def program() -> Path:
     """Path of the `biela` program; a missing one fails the test that asks for it."""
     suffix = ".exe" if os.name == "nt" else ""

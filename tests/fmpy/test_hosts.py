@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import SHIPPED
+from harness import SHIPPED, state_names
 
 STEP = 0.01
 STEPS = 10
@@ -91,8 +91,13 @@ def test_fmuloader_exchanges_the_model(fmu, loaded, expected, name):
     instance = loaded(name, "MODEL_EXCHANGE")
     assert not instance.new_discrete_states().newDiscreteStatesNeeded
     instance.enter_continuous_time_mode()
-    assert instance.get_continuous_states(0) == instance.get_derivatives(0) == []
+    states = state_names(fmu(name).description)
+    starts = [float(fmu(name).variables[state].start) for state in states]
+    assert instance.get_continuous_states(len(states)) == starts
+    assert instance.get_derivatives(len(states))[::2] == starts[1::2]
     instance.set_time(STEP * STEPS)
+    if states:
+        instance.set_continuous_states([expected(name)[state] for state in states])
     found = outputs(fmu(name), instance.get_real)
     instance.completed_integrator_step()
     for output, value in expected(name).items():
@@ -147,7 +152,7 @@ def test_fmuloader_steps_fmi_3_to_the_same_bits(fmu3, loaded3, expected, name):
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_fmuloader_exchanges_the_fmi_3_model(fmu3, loaded3, expected, name):
+def test_fmuloader_exchanges_the_fmi_3_model(fmu, fmu3, loaded3, expected, name):
     instance = loaded3(name)
     token = fmu3(name).description.instantiationToken
     instance.instantiate_model_exchange(name, instantiation_token=token)
@@ -155,9 +160,13 @@ def test_fmuloader_exchanges_the_fmi_3_model(fmu3, loaded3, expected, name):
     instance.exit_initialization_mode()
     assert not instance.update_discrete_states().discrete_states_need_update
     instance.enter_continuous_time_mode()
-    assert instance.get_continuous_states(0) == []
-    assert instance.get_continuous_state_derivatives(0) == []
+    states = state_names(fmu(name).description)
+    starts = [float(fmu(name).variables[state].start) for state in states]
+    assert instance.get_continuous_states(len(states)) == starts
+    assert instance.get_continuous_state_derivatives(len(states))[::2] == starts[1::2]
     instance.set_time(STEP * STEPS)
+    if states:
+        instance.set_continuous_states([expected(name)[state] for state in states])
     found = outputs(fmu3(name), instance.get_float64)
     assert instance.completed_integrator_step() == (False, False)
     for output, value in expected(name).items():

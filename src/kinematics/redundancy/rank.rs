@@ -4,7 +4,7 @@
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::least_squares::LeastSquares;
-use crate::kinematics::error::Error;
+use crate::kinematics::error::{Error, Remedy};
 use crate::kinematics::linear::{Echelon, ReducedRow, Row, spread};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
@@ -153,15 +153,15 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
     excess.dedup();
     let loose = moved_by(system, &ranks.echelon);
     let slots = suspect_slots(mechanism, &loose);
-    let fits_otherwise = slots.is_empty() && excess.is_empty();
+    let line = match slots.is_empty() && excess.is_empty() {
+        true => coordinate_line(mechanism, &loose),
+        false => None,
+    };
     Err(Error::Structure {
         freedom,
         drivers: mechanism.drivers.len(),
         free,
-        slots,
-        line: fits_otherwise
-            .then(|| coordinate_line(mechanism, &loose))
-            .flatten(),
+        remedy: Box::new(line.map_or(Remedy::Slots(slots), Remedy::Line)),
         loose,
         excess: excess
             .into_iter()
@@ -207,10 +207,11 @@ fn coordinate_line(mechanism: &Mechanism, loose: &[String]) -> Option<String> {
         .min_by_key(|joint| body(joint.from).is_some() && body(joint.to).is_some())?;
     let [from, to] = [joint.from, joint.to].map(|marker| mechanism.marker_path(marker));
     let kind = coordinate(&joint.kind)?;
-    Some(format!(
+    let line = format!(
         "{} = {{ coordinate = \"{kind}\", markers = [\"{from}\", \"{to}\"] }}",
         if kind == "angle" { "turn" } else { "travel" },
-    ))
+    );
+    Some(line)
 }
 
 /// Returns the ranks at the present places of the bodies.

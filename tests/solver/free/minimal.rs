@@ -65,8 +65,8 @@ impl Minimal {
             for column in 0..count {
                 for (a, b) in parts.iter().zip(&along[column].0) {
                     let weights = [a.mass, a.mass, a.inertia];
-                    for c in 0..3 {
-                        matrix[(row, column)] += weights[c] * a.at[c].first * b.at[c].first;
+                    for ((weight, a), b) in weights.iter().zip(&a.at).zip(&b.at) {
+                        matrix[(row, column)] += weight * a.first * b.first;
                     }
                 }
             }

@@ -202,18 +202,6 @@ pub(super) fn assert_follows_in(
             largest = largest.max(error_in(units, &run.state(), &exact(index)));
         }
         let energy = run.energy_error / kinetic_energy;
-        let Statistics {
-            evaluations,
-            accepted,
-            rejected,
-            failed,
-            ..
-        } = run.statistics();
-        println!(
-            "| {name} {tolerance:e} | {largest:.1e} / {mark:e} | energy {energy:.1e} | joints \
-             {:.1e} | {evaluations} evaluations, {accepted}+{rejected}+{failed} steps |",
-            run.residual
-        );
         assert!(largest < mark, "{name} at {tolerance}: {largest}");
         assert!(run.residual < CLOSED, "{name}: {}", run.residual);
         if tolerance <= 1e-10 {
@@ -247,7 +235,6 @@ pub(super) fn assert_lagrange(
         energy = energy.max(truth.kinetic_energy(*time, z, rates));
     }
     let relative = largest / magnitude;
-    println!("| {name} accelerations | {relative:.1e} / {ACCELERATION:e} |");
     assert!(relative < ACCELERATION, "{name}: {relative}");
     assert_follows(
         name,
