@@ -20,7 +20,7 @@ pub enum Error {
         free: usize,
         /// The bodies that can move though no driver does: kind and name of each.
         loose: Vec<String>,
-        /// What may be meant.
+        /// The probable meaning.
         remedy: Box<Remedy>,
         /// Drivers of which one is too many, or joints and constraints that hold a coordinate that
         /// a driver drives: kind and name of each.
@@ -294,7 +294,7 @@ fn contradiction_message(origins: &[String], open: &OpenJoint) -> String {
     }
 }
 
-/// What may be meant by a mechanism whose drivers do not match its degrees of freedom.
+/// The probable meaning of a mechanism whose drivers do not match its degrees of freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remedy {
     /// Slots on whose points a body that is free to move may only turn, perhaps none: kind and name
