@@ -94,18 +94,23 @@ def test_outputs_belong_to_the_time_of_their_inputs(fmu, name, solver):
 @pytest.mark.parametrize("name", SHIPPED)
 def test_every_shipped_mechanism_runs_as_either(fmu, name):
     """Prescribed motions and inputs at their starts: both interfaces give the same."""
-    options = {"stop_time": 0.2, "output_interval": 0.02, "step_size": 0.02}
-    options["relative_tolerance"] = 1e-12
+    # A motion without a load may run away after its own stop time.
+    stop = min(0.2, float(fmu(name).description.defaultExperiment.stopTime))
+    options = {"stop_time": stop, "output_interval": stop / 10, "step_size": stop / 10}
+    options["relative_tolerance"] = 1e-11
     both = [
         simulate(fmu(name), fmi_type=kind, **options) for kind in ("ModelExchange", "CoSimulation")
     ]
     assert len(both[0]) == len(both[1]) == 11
     # Of free motion the host integrates one, as exactly as its solver can from step to step.
-    tolerance = 1e-6 if state_names(fmu(name).description) else 1e-9
+    is_free = bool(state_names(fmu(name).description))
+    tolerance = 1e-6 if is_free else 1e-9
     for column in both[0].dtype.names:
         # Two ways to the same pose, each to some ulp of the largest coordinate, which rates of
         # up to some hundred carry along.
-        np.testing.assert_allclose(both[0][column], both[1][column], rtol=tolerance, atol=tolerance)
+        found, wanted = both[0][column], both[1][column]
+        size = max(1.0, np.abs(wanted).max()) if is_free else 1.0
+        np.testing.assert_allclose(found, wanted, rtol=tolerance, atol=tolerance * size)
 
 
 def test_evaluation_order_does_not_matter(exchanged):
