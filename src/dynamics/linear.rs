@@ -149,7 +149,10 @@ impl FreeMotion {
         const LONGEST: f64 = 0.3;
         /// A step below this is rounding.
         const AT_REST: f64 = 1e-13;
+        /// Part of the scales by which the mechanism leaves an unstable equilibrium.
+        const ASIDE: f64 = 0.01;
         let scales = self.scales();
+        let aside = ASIDE * DVector::from_column_slice(&scales);
         let count = scales.len();
         for _ in 0..MOST_STEPS {
             self.restart(solver, given, |_| 0.0)?;
@@ -169,7 +172,11 @@ impl FreeMotion {
                     longest.max((step / scale).abs())
                 });
             if longest <= AT_REST {
-                return Ok(());
+                match way_down(&stiffness) {
+                    Some(way) => self.go_by(solver, &(way.component_mul(&aside)))?,
+                    None => return Ok(()),
+                }
+                continue;
             }
             let part = (LONGEST / longest).min(1.0);
             self.go_by(solver, &(step * part))?;
@@ -196,6 +203,16 @@ impl FreeMotion {
             Error::Blocked(blocked.describe(solver.mechanism(), pose, None, |_| true))
         })
     }
+}
+
+/// Returns the direction in which an equilibrium with this stiffness is unstable most, if it is.
+fn way_down(stiffness: &DMatrix<f64>) -> Option<DVector<f64>> {
+    /// A negative stiffness of this part of the largest is rounding: the equilibrium is neutral.
+    const NEUTRAL: f64 = 1e-9;
+    let eigen = stiffness.clone().symmetric_eigen();
+    let (least, value) = eigen.eigenvalues.argmin();
+    let unstable = value < -NEUTRAL * eigen.eigenvalues.amax();
+    unstable.then(|| eigen.eigenvectors.column(least).into_owned())
 }
 
 /// Returns the step that solves (K + μ M) δ = Q with the least μ of a few for which the matrix is

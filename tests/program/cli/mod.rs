@@ -4,6 +4,7 @@ mod check;
 mod draw;
 mod exit_codes;
 mod export;
+mod free;
 mod help;
 mod input;
 mod new;

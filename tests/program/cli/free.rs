@@ -1,0 +1,62 @@
+//! `biela balance` and `biela linearize`
+
+use serde_json::Value;
+
+use crate::cli::program::{biela, stdout};
+
+/// A rod of 2 kg whose centre of mass is 0.5 m from its pivot, with an inertia of 0.5 kg.m2 about it.
+const ROD: &str = r#"
+format = 1
+name = "rod"
+ground.markers = { O = [0, 0] }
+bodies.rod = { mass = 2, center = [0.5, 0], markers = { O = [0, 0] } }
+joints.O = { type = "revolute", markers = ["ground.O", "rod.O"] }
+freedoms.swing = { coordinate = "angle", markers = ["ground.O", "rod.O"], start = "START*deg" }
+forces.motor = { coordinate = "angle", markers = ["ground.O", "rod.O"] }
+"#;
+
+/// Runs a command on the rod and returns its answer.
+fn answer(start: &str, arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rod.toml");
+    std::fs::write(&file, ROD.replace("START", start)).expect("it can be written");
+    let mut all = vec![arguments[0], file.to_str().expect("UTF-8")];
+    all.extend(&arguments[1..]);
+    stdout(&biela(&all).success())
+}
+
+/// Also from the very top, where the rod is in balance but not stable.
+#[test]
+fn a_rod_comes_down_to_rest() {
+    for start in ["90", "89", "-30", "-90"] {
+        let told = answer(start, &["balance"]);
+        let is_down = ["= -90.000000 deg", "= 270.000000 deg"].map(|text| told.contains(text));
+        assert!(is_down.contains(&true), "{start}: {told}");
+    }
+    // m g a cos(swing) = 9.81 N.m * 0.5 holds the rod at -60 degrees.
+    let told = answer(
+        "-90",
+        &["balance", "--drive", "motor.effort = 2*9.81*0.5*0.5"],
+    );
+    assert!(told.contains("= -60.000000 deg"), "{told}");
+}
+
+/// Hanging it swings with the square of its frequency m g a / J; a torque accelerates it by 1 / J.
+#[test]
+fn a_hanging_rod_is_linear() {
+    let text = answer("80", &["linearize", "--balance", "--variables", "rod.phi"]);
+    let found: Value = serde_json::from_str(&text).expect("JSON");
+    let square = 2.0 * 9.81 * 0.5 / 0.5;
+    for (matrix, row, column, expected) in [
+        ("A", 0, 1, 1.0),
+        ("A", 1, 0, -square),
+        ("A", 1, 1, 0.0),
+        ("B", 1, 0, 2.0),
+        ("C", 0, 0, 1.0),
+        ("D", 0, 0, 0.0),
+    ] {
+        let value = found[matrix][row][column].as_f64().expect("a number");
+        // Some roundings of numbers of up to 20.
+        assert!((value - expected).abs() < 1e-13, "{matrix}: {value}");
+    }
+}
