@@ -10,6 +10,21 @@ use crate::dynamics::{self, FreeMotion, StateSpace};
 use crate::kinematics::{Output, Solution, Solver};
 use crate::mechanism::CoordinateKind;
 
+/// Lets the freedoms of a mechanism, if it has some, move by the forces from the solver's pose on.
+pub(super) fn release(
+    solver: &mut Solver,
+    signals: &Signals,
+) -> Result<Option<FreeMotion>, dynamics::Error> {
+    let tolerance = solver.mechanism().simulation.tolerance;
+    let mut free = FreeMotion::new(solver, tolerance)?;
+    if let Some(free) = &mut free {
+        let held = solver.pose().drivers.clone();
+        let part = signals.part(solver.pose().time, &held);
+        free.start(solver, &part)?;
+    }
+    Ok(free)
+}
+
 /// A mechanism with freedoms, at its start with the velocities of its file, or at rest.
 pub(super) struct AtRest {
     file: String,
@@ -36,16 +51,11 @@ impl AtRest {
         let mut solution = Solution::new(&solver);
         solution.seek_forces(&solver);
         let stopped = |error: dynamics::Error| stopped(file, &error);
-        let tolerance = solver.mechanism().simulation.tolerance;
-        let free = FreeMotion::new(&solver, tolerance).map_err(stopped)?;
-        let Some(mut free) = free else {
+        let Some(free) = release(&mut solver, &signals).map_err(stopped)? else {
             return Err(Error::Usage(format!(
                 "{file}: the mechanism has no freedom: all that moves is driven"
             )));
         };
-        let held = solver.pose().drivers.clone();
-        let part = signals.part(solver.pose().time, &held);
-        free.start(&mut solver, &part).map_err(stopped)?;
         solution.driver_rates.copy_from_slice(free.drivers());
         Ok(Self {
             file: file.to_owned(),

@@ -1,6 +1,7 @@
 //! A mechanism that moves along the motions of its drivers.
 
 use super::conditions::Scenario;
+use super::free::release;
 use super::message::Message;
 use super::signals::Signals;
 use crate::dynamics::{self, FreeMotion};
@@ -53,15 +54,10 @@ impl Motion {
 
     /// Lets freedoms, if there are some, move by the forces; they would be held otherwise.
     pub(super) fn with_freedoms(mut self) -> Result<Self, dynamics::Error> {
-        let tolerance = self.solver.mechanism().simulation.tolerance;
-        let Some(mut free) = FreeMotion::new(&self.solver, tolerance)? else {
-            return Ok(self);
-        };
-        let held = self.solver.pose().drivers.clone();
-        let part = self.signals.part(self.solver.pose().time, &held);
-        free.start(&mut self.solver, &part)?;
-        self.free = Some(free);
-        self.solve()?;
+        self.free = release(&mut self.solver, &self.signals)?;
+        if self.free.is_some() {
+            self.solve()?;
+        }
         Ok(self)
     }
 

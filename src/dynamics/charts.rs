@@ -17,7 +17,7 @@ use crate::mechanism::{
 
 /// The motion goes on in other coordinates if these move by so much, per unit of those in use:
 /// their sines are below a third then, and the equations lose less than a digit.
-pub(super) const EXCHANGE: f64 = 3.0;
+const EXCHANGE: f64 = 3.0;
 /// It returns to the file's own freedoms if these move by such a part of the best ones: more than
 /// at the exchange, so that the two do not alternate.
 const RETURN: f64 = 0.5;
@@ -134,7 +134,6 @@ impl Charts {
         &mut self,
         solver: &Solver,
         equations: &EquationsOfMotion,
-        least: f64,
     ) -> Option<Vec<usize>> {
         let size = solver.size();
         for (column, freedom) in self.freedoms.iter().enumerate() {
@@ -153,7 +152,7 @@ impl Charts {
         let uses_own = self.current.iter().enumerate().all(|(k, own)| k == *own);
         let chosen = if !uses_own && self.own.choose() >= RETURN * volume {
             self.own.chosen.clone()
-        } else if volume > least {
+        } else if volume > EXCHANGE {
             self.all.chosen.clone()
         } else {
             return None;

@@ -218,7 +218,7 @@ impl Equations {
         direction.time = 1.0;
         let definitions = solver.mechanism().drivers.iter().enumerate();
         for (index, driver) in definitions {
-            if !driver.is_free() && driver.motion().is_none() {
+            if driver.is_given() {
                 let [velocity, acceleration] = self.point.drivers[index].derivatives;
                 direction.drivers[index] = Jet::new(velocity, [acceleration, 0.0]);
             }
@@ -364,7 +364,7 @@ impl Equations {
         } = self;
         let velocity = |driver: DriverId| point.drivers[driver.index()].first();
         solver.write_equations(velocity, &point.loads, forces, motion)?;
-        point.energy = motion.energies[0] + motion.energies[1];
+        point.energy = motion.energy;
         self.solve_accelerations(solver)?;
         let count = self.freedoms.len();
         for (k, freedom) in self.freedoms.iter().enumerate() {

@@ -239,7 +239,7 @@ fn downhill(
 fn inputs(mechanism: &Mechanism) -> Vec<Change> {
     let forces = (0..mechanism.force_inputs().len()).map(Change::Force);
     let drivers = mechanism.drivers.iter().enumerate();
-    let drivers = drivers.filter(|(_, driver)| !driver.is_free() && driver.motion().is_none());
+    let drivers = drivers.filter(|(_, driver)| driver.is_given());
     let of_drivers = drivers
         .flat_map(|(index, _)| Order::ALL.map(|order| Change::Driver(DriverId(index), order)));
     forces.chain(of_drivers).collect()

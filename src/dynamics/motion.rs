@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::charts::{Charts, EXCHANGE};
+use super::charts::Charts;
 use super::equations::{Equations, Trials};
 use super::error::Error;
 use super::given::Given;
@@ -323,7 +323,7 @@ impl FreeMotion {
                 return Err(error.into());
             }
             let equations = self.equations.motion();
-            if let Some(coordinates) = self.charts.better(solver, equations, EXCHANGE) {
+            if let Some(coordinates) = self.charts.better(solver, equations) {
                 self.exchange(solver, solution, given, coordinates)?;
             }
         }

@@ -21,15 +21,3 @@ pub struct FreeState {
     /// Energy of the bodies without that of springs, there and when the work was zero \[J\].
     pub energies: [f64; 2],
 }
-
-impl FreeState {
-    /// Copies another state of the same mechanism. Allocates nothing.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.integrator.copy_from(&other.integrator);
-        self.coordinates.copy_from_slice(&other.coordinates);
-        self.drivers.copy_from_slice(&other.drivers);
-        self.loads.copy_from_slice(&other.loads);
-        self.tolerance = other.tolerance;
-        self.energies = other.energies;
-    }
-}

@@ -86,6 +86,7 @@ pub use forces::{
     Reported,
 };
 pub use linear::PivotOrder;
+pub(crate) use linear::{DenseLu, Factors, Singular};
 pub use origin::Origin;
 pub use path::{Curve, Path, Rates};
 pub use plan::{BlockChoices, Crossing, Polynomial};

@@ -338,6 +338,19 @@ impl Driver {
         matches!(self.source, DriverSource::Free { .. })
     }
 
+    /// Returns whether it follows values that are given from outside, as an FMI input does.
+    #[must_use]
+    pub fn is_given(&self) -> bool {
+        matches!(self.source, DriverSource::Input { .. })
+    }
+
+    /// Returns whether no motion prescribes its acceleration: it is an FMI input of the file, or a
+    /// freedom.
+    #[must_use]
+    pub fn has_open_acceleration(&self) -> bool {
+        self.is_input || self.is_free()
+    }
+
     /// Returns the value at the start \[m or rad\], `None` for a prescribed motion.
     #[must_use]
     pub fn start(&self) -> Option<f64> {

@@ -22,7 +22,6 @@
 //! | `step_length` | the length of the next step |
 //! | `system` | the right-hand side; evaluations that are counted and checked |
 //! | `dense` | the solution between the ends of a step |
-//! | `factors` | LU factors of a small matrix |
 //! | `dormand_prince` | the explicit method |
 //! | `rosenbrock` | the stiff method |
 //! | `first_step` | the length of the first step |
@@ -33,7 +32,6 @@ mod control;
 mod dense;
 mod dormand_prince;
 mod error;
-mod factors;
 mod first_step;
 mod rosenbrock;
 mod state;

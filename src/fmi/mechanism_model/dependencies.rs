@@ -182,8 +182,7 @@ impl<'a> DependencyTable<'a> {
     }
 
     fn is_input(&self, driver: DriverId) -> bool {
-        let driver = &self.mechanism.drivers[driver.index()];
-        driver.motion().is_none() && !driver.is_free()
+        self.mechanism.drivers[driver.index()].is_given()
     }
 
     /// Returns the inputs of forces, and the time if forces depend on it, for a force.

@@ -149,8 +149,8 @@ impl MechanismModel {
     /// # Errors
     ///
     /// Freedoms have no acceleration there.
-    pub(super) fn settle_freedoms(&mut self, starting: bool) -> Result<(), Failure> {
-        if !starting || self.free.is_none() {
+    pub(super) fn settle_freedoms(&mut self) -> Result<(), Failure> {
+        if self.free.is_none() {
             return Ok(());
         }
         self.set_path(self.course.time, 0.0);

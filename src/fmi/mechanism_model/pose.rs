@@ -91,7 +91,7 @@ impl MechanismModel {
         let inputs = self.mechanism.drivers.iter().zip(&mut course.inputs);
         for ((driver, input), (monitor, sources)) in inputs.zip(observed) {
             monitor.sources = *sources;
-            if driver.motion().is_some() || driver.is_free() {
+            if !driver.is_given() {
                 continue;
             }
             let now = input.sample(rule.rates, start);
@@ -185,7 +185,7 @@ impl MechanismModel {
         self.set_driver_rates(self.course.time, 0.0, 0.0);
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             // The rates of a prescribed motion are exact, those of a freedom follow from forces.
-            if driver.motion().is_some() || driver.is_free() {
+            if !driver.is_given() {
                 continue;
             }
             let rates = self.solution.driver_rates[index].derivatives.iter_mut();
@@ -219,8 +219,8 @@ impl MechanismModel {
             self.report_falls(log);
         }
         self.commit_pose();
-        self.settle_freedoms(starting)?;
         if starting {
+            self.settle_freedoms()?;
             for input in &mut self.course.inputs {
                 input.start();
             }

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use super::rule::{EXTRAPOLATION, RATES};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Dependencies, Origin, Output, OutputSource, omitted_reactions};
-use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Signal, Unit};
+use crate::mechanism::{
+    Driver, DriverId, DriverSource, Mechanism, Order, ParameterId, Signal, Unit,
+};
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
 pub const TABLE_VERSION: u32 = 3;
@@ -60,11 +62,7 @@ pub(super) fn variables_without(
     table.add_inputs(mechanism);
     table.add_force_inputs(mechanism);
     table.add_parameters(mechanism);
-    if mechanism
-        .drivers
-        .iter()
-        .any(|driver| matches!(driver.source, DriverSource::Input { .. }))
-    {
+    if mechanism.drivers.iter().any(Driver::is_given) {
         table.add_settings(mechanism);
     }
     table.add_outputs(mechanism, omitted);

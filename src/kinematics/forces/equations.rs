@@ -26,7 +26,7 @@ pub struct EquationsOfMotion {
     /// Power of all applied forces but gravity \[W\].
     pub applied_power: f64,
     /// Energy of the bodies without that of springs: kinetic, and potential of gravity \[J\].
-    pub energies: [f64; 2],
+    pub energy: f64,
     /// Rates of q where no driver accelerates.
     coasting: Rates,
     /// ∂q/∂u of each driver.
@@ -42,7 +42,7 @@ impl EquationsOfMotion {
             inertia: DMatrix::zeros(drivers, drivers),
             bias: vec![0.0; drivers],
             applied_power: 0.0,
-            energies: [0.0; 2],
+            energy: 0.0,
             coasting: Rates::new(unknowns),
             units: vec![Rates::new(unknowns); drivers],
             driver_rates: vec![Jet::constant(0.0); drivers],
@@ -80,7 +80,7 @@ impl EquationsOfMotion {
         self.inertia.fill(0.0);
         self.bias.fill(0.0);
         self.applied_power = 0.0;
-        self.energies = [0.0; 2];
+        let mut energies = [0.0; 2];
         let gravity = masses.gravity;
         let rates = [self.coasting.velocity(), self.coasting.acceleration()];
         let [velocities, accelerations] = rates.map(by_body);
@@ -88,7 +88,7 @@ impl EquationsOfMotion {
         for (k, body) in masses.bodies.iter_mut().enumerate() {
             body.turn([frames[k].cos, frames[k].sin]);
             let own = body.energies(frames[k].origin.into(), velocities[k], gravity);
-            self.energies = [self.energies[0] + own[0], self.energies[1] + own[1]];
+            energies = [energies[0] + own[0], energies[1] + own[1]];
             let exerted = by_body(exerted)[k];
             self.applied_power -= power(velocities[k], exerted);
             let mut demand = body.demand(velocities[k][2], accelerations[k], gravity);
@@ -106,6 +106,7 @@ impl EquationsOfMotion {
                 }
             }
         }
+        self.energy = energies[0] + energies[1];
     }
 }
 

@@ -520,7 +520,7 @@ impl Forces {
             let own: Varied = sensitivity.motion.driver_value(driver);
             let mut bias = effort;
             for (input, definition) in mechanism.drivers.iter().enumerate() {
-                if definition.is_input || definition.is_free() {
+                if definition.has_open_acceleration() {
                     let acceleration = sensitivity.motion.driver_value(DriverId(input)).second();
                     bias -= inertia(index, input) * acceleration;
                 }

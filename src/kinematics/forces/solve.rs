@@ -534,7 +534,7 @@ impl Work {
 /// for a prescribed motion.
 fn coasting_and_free(driver: &Driver, rates: &Jet) -> (Jet, f64) {
     let [first, second] = rates.derivatives;
-    let [coasting, free] = match driver.is_input || driver.is_free() {
+    let [coasting, free] = match driver.has_open_acceleration() {
         true => [0.0, second],
         false => [second, 0.0],
     };

@@ -14,9 +14,10 @@ mod sparse;
 mod spread;
 
 pub(super) use condition::Condition;
-pub(super) use dense::{DenseLu, dot, subtract};
+pub(crate) use dense::DenseLu;
+pub(super) use dense::{dot, subtract};
 pub(super) use echelon::{Echelon, ReducedRow, Row};
-pub(super) use factors::Factors;
+pub(crate) use factors::{Factors, Singular};
 pub(super) use lu::Lu;
 pub(super) use norm::nan_or_larger;
 pub use sparse::PivotOrder;

@@ -125,7 +125,7 @@ impl Output {
         let mut list = List::default();
         list.add_places(mechanism);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
-            if driver.motion().is_some() || driver.is_free() {
+            if !driver.is_given() {
                 list.add_driver(mechanism, DriverId(index));
             }
         }

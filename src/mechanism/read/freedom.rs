@@ -47,16 +47,8 @@ impl<'a> Context<'a> {
             self.warn_of_unit(velocity, CoordinateKind::units(kind)[1]);
         }
         let source = DriverSource::Free {
-            start: match &keys.start.value {
-                Some(start) => start.value?,
-                None if keys.start.key.is_none() => f64::NAN,
-                None => return None,
-            },
-            velocity: match &keys.velocity.value {
-                Some(velocity) => velocity.value?,
-                None if keys.velocity.key.is_none() => 0.0,
-                None => return None,
-            },
+            start: keys.start.number_or(f64::NAN)?,
+            velocity: keys.velocity.number_or(0.0)?,
             named: None,
         };
         Some(Driver {

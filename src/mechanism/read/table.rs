@@ -108,6 +108,14 @@ impl Field<Quantity> {
         self.value.map(|quantity| quantity.expression)
     }
 
+    /// Returns the value for the file's parameters, or `default` if the key is left out.
+    pub(super) fn number_or(&self, default: f64) -> Option<f64> {
+        match self.key {
+            Some(_) => self.number(),
+            None => Some(default),
+        }
+    }
+
     /// Returns the value for the file's parameters.
     pub(super) fn number(&self) -> Option<f64> {
         self.value.as_ref()?.value

@@ -12,9 +12,9 @@ use nalgebra::DMatrix;
 use super::control::ErrorControl;
 use super::dense::DenseOutput;
 use super::error::{Reason, Refusal};
-use super::factors::{Factors, Singular};
 use super::state::Statistics;
 use super::system::{System, Trial, evaluate};
+use crate::kinematics::{DenseLu, Factors, Singular};
 use tableau::{A, ALPHA, C, DENSE, GAMMA, GAMMA_T, STAGES};
 
 /// Order of the method.
@@ -32,7 +32,7 @@ pub(super) struct Rosenbrock {
     dx_dt: Vec<f64>,
     /// Whether both belong to the last accepted point.
     linearised: bool,
-    factors: Factors,
+    factors: DenseLu,
     /// The stages u.
     stages: [Vec<f64>; STAGES],
     /// Argument of a stage.
@@ -46,7 +46,7 @@ impl Rosenbrock {
             jacobian: DMatrix::zeros(order, order),
             dx_dt: vec![0.0; order],
             linearised: false,
-            factors: Factors::new(order),
+            factors: DenseLu::new(order, 0),
             stages: std::array::from_fn(|_| vec![0.0; order]),
             x: vec![0.0; order],
         }
@@ -112,12 +112,14 @@ impl Rosenbrock {
     /// Factorises I / (γ h) − ∂f/∂x.
     fn factorise(&mut self, h: f64, statistics: &mut Statistics) -> Result<(), Singular> {
         statistics.factorisations += 1;
-        let matrix = &mut self.factors.matrix;
-        matrix.zip_apply(&self.jacobian, |entry, derivative| *entry = -derivative);
-        for diagonal in 0..matrix.nrows() {
-            matrix[(diagonal, diagonal)] += 1.0 / (GAMMA * h);
+        self.factors.clear();
+        for (column, derivatives) in self.jacobian.column_iter().enumerate() {
+            for (row, derivative) in derivatives.iter().enumerate() {
+                self.factors.add(row, column, -derivative);
+            }
+            self.factors.add(column, column, 1.0 / (GAMMA * h));
         }
-        self.factors.factorise()
+        self.factors.factorise(0.0)
     }
 
     /// Sets the argument of a stage.
