@@ -93,6 +93,11 @@ impl AtRest {
         })
     }
 
+    /// Returns whether the freedoms are good coordinates wherever the mechanism moves.
+    pub(super) fn keeps_coordinates(&self) -> bool {
+        dynamics::keeps_coordinates(self.solver.mechanism())
+    }
+
     /// Moves to the stable equilibrium downhill.
     pub(super) fn balance(&mut self) -> Result<(), Error> {
         let held = self.solver.pose().drivers.clone();

@@ -9,8 +9,11 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
+use super::equations::Equations;
 use crate::kinematics::constraint::{Constraint, of_coordinate};
-use crate::kinematics::{EquationsOfMotion, Forces, Rates, Solution, Solver};
+use crate::kinematics::{
+    End, EquationsOfMotion, Forces, Path, RangeSettings, Rates, Solution, Solver,
+};
 use crate::mechanism::{
     Coordinate, CoordinateKind, DriverId, DriverSource, Jet, JointKind, Mechanism,
 };
@@ -21,6 +24,23 @@ const EXCHANGE: f64 = 3.0;
 /// It returns to the file's own freedoms if these move by such a part of the best ones: more than
 /// at the exchange, so that the two do not alternate.
 const RETURN: f64 = 0.5;
+
+/// Returns whether the freedoms of a mechanism are good coordinates wherever it moves: each body is
+/// placed by straight formulas, or the only one turns fully and passes no change point. An end of the
+/// range, or a mechanism that does not assemble, denies it.
+#[must_use]
+pub fn keeps_coordinates(mechanism: &Arc<Mechanism>) -> bool {
+    let path = Path::new(mechanism);
+    let Ok(mut solver) = Solver::assembled(Arc::clone(mechanism), &path) else {
+        return false;
+    };
+    if solver.is_explicit() || mechanism.drivers.len() > 1 {
+        return solver.is_explicit();
+    }
+    let range = solver.range(DriverId(0), &RangeSettings::default());
+    let turns = |end: &End| matches!(end, End::Turns(_));
+    turns(&range.lower) && turns(&range.upper) && range.crossings.is_empty()
+}
 
 /// The charts of a mechanism.
 #[derive(Debug)]
@@ -70,7 +90,10 @@ impl Candidate {
 struct Chart {
     coordinates: Vec<usize>,
     solver: Solver,
-    forces: Option<Forces>,
+    /// The forces of its equations of motion.
+    of_equations: Forces,
+    /// The forces of a solution that has some.
+    of_solution: Option<Forces>,
 }
 
 impl Charts {
@@ -110,6 +133,13 @@ impl Charts {
             own: Volume::new(count, count),
             candidates,
         }
+    }
+
+    /// Returns the solver whose coordinates are the file's freedoms, given the one in use.
+    pub(super) fn own<'a>(&'a self, solver: &'a Solver) -> &'a Solver {
+        let mut others = self.others.iter();
+        let own = others.find(|chart| chart.coordinates.iter().enumerate().all(|(k, c)| k == *c));
+        own.map_or(solver, |chart| &chart.solver)
     }
 
     /// Returns the candidates in use, one per freedom.
@@ -161,10 +191,12 @@ impl Charts {
     }
 
     /// Puts the chart with these candidates into use: the solver is that of the chart, anywhere, and
-    /// the solution has its forces. Returns false if they are no coordinates of the mechanism.
+    /// the equations of motion and the solution have its forces. Returns false if they are no
+    /// coordinates of the mechanism.
     pub(super) fn select(
         &mut self,
         solver: &mut Solver,
+        forces: &mut Forces,
         solution: &mut Solution,
         coordinates: &[usize],
     ) -> bool {
@@ -181,26 +213,28 @@ impl Charts {
             return false;
         };
         let chart = &mut self.others[place];
-        if chart.forces.is_none() && solution.forces().is_some() {
-            chart.forces = Some(chart.solver.forces());
+        if chart.of_solution.is_none() && solution.forces().is_some() {
+            chart.of_solution = Some(chart.solver.forces());
         }
         std::mem::swap(solver, &mut chart.solver);
-        solution.exchange_forces(&mut chart.forces);
+        std::mem::swap(forces, &mut chart.of_equations);
+        solution.exchange_forces(&mut chart.of_solution);
         chart.coordinates = std::mem::replace(&mut self.current, coordinates.to_vec());
         true
     }
 
-    /// Moves on from the solver's pose, with these rates of q, in other coordinates. Writes their
-    /// values and velocities. Returns false, and changes nothing, if they are no coordinates of the
+    /// Moves on from the pose of the equations in other coordinates. Writes their values and
+    /// velocities. Returns false, and changes nothing, if they are no coordinates of the
     /// mechanism.
     pub(super) fn exchange(
         &mut self,
         solver: &mut Solver,
+        equations: &mut Equations,
         solution: &mut Solution,
         coordinates: Vec<usize>,
-        rates: &Rates,
         x: &mut [f64],
     ) -> bool {
+        let rates = equations.motion().coasting();
         let count = coordinates.len();
         let mut pose = solver.pose().clone();
         pose.crossings.clear();
@@ -210,7 +244,7 @@ impl Charts {
             pose.drivers[self.freedoms[k].index()] = value;
             [x[k], x[count + k]] = [value, derivatives[0]];
         }
-        if !self.select(solver, solution, &coordinates) {
+        if !self.select(solver, &mut equations.forces, solution, &coordinates) {
             self.unfit.push(coordinates);
             return false;
         }
@@ -238,7 +272,8 @@ impl Charts {
         let solver = Solver::new(Arc::new(mechanism)).ok()?;
         Some(Chart {
             coordinates: coordinates.to_vec(),
-            forces: None,
+            of_equations: solver.forces(),
+            of_solution: None,
             solver,
         })
     }

@@ -21,7 +21,7 @@ const NO_INERTIA: f64 = 1e-13;
 pub(super) struct Equations {
     /// The freedoms among the drivers, ascending.
     pub(super) freedoms: Vec<DriverId>,
-    forces: Forces,
+    pub(super) forces: Forces,
     motion: EquationsOfMotion,
     /// From the solver's pose straight to the values at a trial point.
     path: Path,

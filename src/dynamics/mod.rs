@@ -26,6 +26,7 @@ mod linear;
 mod motion;
 mod state;
 
+pub use charts::keeps_coordinates;
 pub use error::Error;
 pub use given::Given;
 pub use linear::StateSpace;

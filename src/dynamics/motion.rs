@@ -183,7 +183,8 @@ impl FreeMotion {
         if self.charts.current() == state.coordinates {
             return Ok(());
         }
-        if !self.charts.select(solver, solution, &state.coordinates) {
+        let forces = &mut self.equations.forces;
+        if !(self.charts).select(solver, forces, solution, &state.coordinates) {
             let why = "its coordinates are none of this mechanism";
             return Err(Error::Integrator(why.to_owned()));
         }
@@ -322,22 +323,40 @@ impl FreeMotion {
                 self.equations.return_to_accepted(solver);
                 return Err(error.into());
             }
-            let equations = self.equations.motion();
-            if let Some(coordinates) = self.charts.better(solver, equations) {
-                self.exchange(solver, solution, given, coordinates)?;
-            }
+            self.exchange(solver, solution, given)?;
         }
         Ok(())
     }
 
-    /// Goes on in other coordinates, if they are coordinates of the mechanism.
-    fn exchange(
+    /// Returns the solver whose coordinates are the file's freedoms, given the one in use.
+    #[must_use]
+    pub fn own<'a>(&'a self, solver: &'a Solver) -> &'a Solver {
+        self.charts.own(solver)
+    }
+
+    /// Returns whether the motion goes on better in other coordinates, from the pose at which
+    /// accelerations were [solved](Self::solve_accelerations) last.
+    pub fn wants_exchange(&mut self, solver: &Solver) -> bool {
+        let better = self.charts.better(solver, self.equations.motion());
+        better.is_some()
+    }
+
+    /// Goes on in other coordinates if the motion [goes on better](Self::wants_exchange) in them, and
+    /// returns whether it does: the solver is another one then, and the solution has its forces.
+    ///
+    /// # Errors
+    ///
+    /// Accelerations do not exist there.
+    pub fn exchange(
         &mut self,
         solver: &mut Solver,
         solution: &mut Solution,
         given: &impl Given,
-        coordinates: Vec<usize>,
-    ) -> Result<(), Error> {
+    ) -> Result<bool, Error> {
+        let better = self.charts.better(solver, self.equations.motion());
+        let Some(coordinates) = better else {
+            return Ok(false);
+        };
         let Self {
             equations,
             integrator,
@@ -346,12 +365,12 @@ impl FreeMotion {
             ..
         } = self;
         x.copy_from_slice(&integrator.state().x);
-        let rates = equations.motion().coasting();
-        if !charts.exchange(solver, solution, coordinates, rates, x) {
-            return Ok(());
+        if !charts.exchange(solver, equations, solution, coordinates, x) {
+            return Ok(false);
         }
         self.set_control(self.tolerance)?;
-        self.go_on(solver, given)
+        self.go_on(solver, given)?;
+        Ok(true)
     }
 
     /// Begins a smooth part of the motion at the solver's pose, with the values in `x`.

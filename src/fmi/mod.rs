@@ -32,7 +32,9 @@ mod variable;
 
 pub use codec::{Codec, Unreadable};
 pub use error::{Error, Failure, StateError};
-pub use instance::{CoSimulation, FmuState, Instance, Reals, StepOutcome, StepProgress};
+pub use instance::{
+    CoSimulation, CompletedStep, EventResult, FmuState, Instance, Reals, StepOutcome, StepProgress,
+};
 pub use log::{Advice, Category, Logger, Sink};
 pub use mechanism_model::{
     MechanismModel, MechanismState, Quantity, RESOURCE, TABLE_VERSION, describe, guid, variables,

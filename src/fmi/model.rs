@@ -260,6 +260,21 @@ pub trait Model: Sized {
     /// event.
     fn update_discrete(&mut self) {}
 
+    /// Returns whether the model has an event at the committed point, in model exchange.
+    fn wants_event(&mut self) -> bool {
+        false
+    }
+
+    /// Exchanges the continuous states at an event at the committed point, in model exchange. Returns
+    /// whether they are others now.
+    ///
+    /// # Errors
+    ///
+    /// The states have no derivatives there.
+    fn exchange_states(&mut self) -> Result<bool, Failure> {
+        Ok(false)
+    }
+
     /// Takes a step of `size` \[s\] from the committed point, and commits its end, at time `end`
     /// \[s\]. The host's time of the committed point, `end - size`, may differ from the model's by
     /// rounding.

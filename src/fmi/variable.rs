@@ -34,19 +34,39 @@ pub enum Causality {
     Input,
     /// Computed for the host.
     Output,
+    /// An output whose start the host sets.
+    StartedOutput,
     /// An output that is a continuous state: the host sets its start and, in model exchange, its value.
     State,
+    /// A continuous state that is no output, and whose start is computed.
+    LocalState,
     /// Computed; describes the solver rather than the model.
     Local,
     /// Time.
     Independent,
 }
 
+impl<Q> Variable<Q> {
+    /// Returns whether it is an unknown of the continuous equations: an output, a state, or the
+    /// derivative of one.
+    #[must_use]
+    pub fn is_unknown(&self) -> bool {
+        let is_derivative = self.causality == Causality::Local && self.derivative_of.is_some();
+        self.causality.is_output() || self.causality.is_state() || is_derivative
+    }
+}
+
 impl Causality {
     /// Returns whether the variable is an output.
     #[must_use]
     pub fn is_output(self) -> bool {
-        matches!(self, Self::Output | Self::State)
+        matches!(self, Self::Output | Self::StartedOutput | Self::State)
+    }
+
+    /// Returns whether the variable is a continuous state.
+    #[must_use]
+    pub fn is_state(self) -> bool {
+        matches!(self, Self::State | Self::LocalState)
     }
 }
 
@@ -118,7 +138,7 @@ pub(super) fn place(value_reference: u32) -> usize {
 /// Returns the places of the continuous states.
 pub(super) fn states<Q>(variables: &[Variable<Q>]) -> Box<[usize]> {
     let all = variables.iter().enumerate();
-    let states = all.filter(|(_, variable)| variable.causality == Causality::State);
+    let states = all.filter(|(_, variable)| variable.causality.is_state());
     states.map(|(place, _)| place).collect()
 }
 

@@ -97,6 +97,12 @@ impl Solver {
         &self.compiled.system
     }
 
+    /// Returns whether every body is placed by straight formulas, whatever the pose.
+    #[must_use]
+    pub fn is_explicit(&self) -> bool {
+        self.compiled.plan.is_explicit()
+    }
+
     /// Returns the structure of the equations that are solved; those set aside take no part.
     #[must_use]
     pub fn structure(&self) -> &Structure {

@@ -16,7 +16,7 @@ from fmpy.validation import validate_fmu
 from harness import SHIPPED, export, mechanism_file, state_names
 from lxml import etree
 
-EVERY_FMU = [*SHIPPED, "turning_yoke", "two_link_arm"]
+EVERY_FMU = [*SHIPPED, "turning_yoke", "two_link_arm", "triple_rocker"]
 
 BODY_UNITS = {
     "x": "m", "y": "m", "phi": "rad",
@@ -86,6 +86,9 @@ def expected_variables(file):
     yield "solver.substeps", "Integer", "local", "discrete", None
     yield "solver.proved", "Integer", "local", "discrete", None
     yield "time", "Real", "independent", "continuous", "s"
+    if file["name"] == "triple_rocker":
+        for name in ("state[1]", "state[2]", "der(state[2])"):
+            yield name, "Real", "local", "continuous", None
 
 
 def expected_forces(file):
@@ -211,11 +214,17 @@ def test_no_variable_of_fmi_2_looks_like_a_state(fmu, fmu3, name):
 
 
 @pytest.mark.parametrize("name", EVERY_FMU)
-def test_initial_and_start(fmu, name):
+def test_initial_and_start(fmu, mechanism_data, name):
     states = state_names(fmu(name).description)
     assert len(states) == fmu(name).description.numberOfContinuousStates
+    freedoms = mechanism_data(name).get("freedoms", {})
+    started = [f"{freedom}.{rate}" for freedom in freedoms for rate in ("position", "velocity")]
+    if name == "triple_rocker":
+        assert states == ["state[1]", "state[2]"]
+    else:
+        assert states == started
     for v in fmu(name).description.modelVariables:
-        if v.causality in ("input", "parameter") or v.name in states:
+        if v.causality in ("input", "parameter") or v.name in started:
             assert v.start is not None, v.name
             assert v.initial == "exact", v.name
         else:

@@ -81,7 +81,9 @@ impl<M: Model> Instance<M> {
         };
         let knowns = self.in_role(value_references, role, |variable| {
             match variable.causality {
-                Causality::Input | Causality::State | Causality::Independent => true,
+                Causality::Input | Causality::State | Causality::LocalState => true,
+                Causality::StartedOutput => initializing,
+                Causality::Independent => true,
                 Causality::Parameter => by_parameters && variable.kind.is_real(),
                 _ => false,
             }
@@ -106,9 +108,8 @@ impl<M: Model> Instance<M> {
         self.check_readable(value_references)?;
         self.in_role(value_references, role, |variable| {
             match variable.causality {
-                Causality::Output | Causality::State => true,
                 Causality::CalculatedParameter => initializing,
-                _ => false,
+                _ => variable.is_unknown(),
             }
         })
     }

@@ -5,6 +5,24 @@ use crate::fmi::model::Model;
 use crate::fmi::state::{Call, Interface, State, Version};
 use crate::mechanism::show_time;
 
+/// What a model answers at an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EventResult {
+    /// The simulation must end, since the point does not exist.
+    pub must_end: bool,
+    /// The continuous states are others, with other nominal values.
+    pub states_changed: bool,
+}
+
+/// What a model answers at the end of an integrator's step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CompletedStep {
+    /// An event follows.
+    pub has_event: bool,
+    /// The simulation must end, since the point does not exist.
+    pub must_end: bool,
+}
+
 impl<M: Model> Instance<M> {
     /// `fmi2EnterEventMode`, `fmi3EnterEventMode`: commits the model's present point in model
     /// exchange. If none exists, [`new_discrete_states`](Self::new_discrete_states) ends the
@@ -25,17 +43,28 @@ impl<M: Model> Instance<M> {
     }
 
     /// `fmi2NewDiscreteStates`, `fmi3UpdateDiscreteStates`: the model has none. Commits values that
-    /// jump between two steps of co-simulation. Returns whether the simulation must end.
+    /// jump between two steps of co-simulation; exchanges the continuous states in model exchange.
     ///
     /// # Errors
     ///
     /// The state forbids the call, the time is beyond the stop time, or the model failed.
-    pub fn new_discrete_states(&mut self) -> Result<bool, Error> {
+    pub fn new_discrete_states(&mut self) -> Result<EventResult, Error> {
         self.allow(Call::NewDiscreteStates)?;
-        if self.course.terminated || self.interface == Interface::CoSimulation {
+        let is_hosted = self.interface == Interface::ModelExchange;
+        if self.course.terminated || !is_hosted || !self.states.is_empty() {
             self.commit(Call::NewDiscreteStates)?;
         }
-        Ok(self.course.terminated)
+        let must_end = self.course.terminated;
+        let exchanged = match is_hosted && !must_end {
+            true => self.model.exchange_states(),
+            false => Ok(false),
+        };
+        let states_changed =
+            exchanged.map_err(|failure| self.failed(Call::NewDiscreteStates, failure))?;
+        Ok(EventResult {
+            must_end,
+            states_changed,
+        })
     }
 
     /// `fmi2EnterContinuousTimeMode`.
@@ -49,16 +78,19 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2CompletedIntegratorStep`: commits the model's present point. No event follows. Returns
-    /// whether the simulation must end, since no such point exists.
+    /// `fmi2CompletedIntegratorStep`, `fmi3CompletedIntegratorStep`: commits the model's present point.
     ///
     /// # Errors
     ///
     /// The state forbids the call, the time is beyond the stop time, or the model failed.
-    pub fn completed_integrator_step(&mut self) -> Result<bool, Error> {
+    pub fn completed_integrator_step(&mut self) -> Result<CompletedStep, Error> {
         self.allow(Call::CompletedIntegratorStep)?;
         self.commit(Call::CompletedIntegratorStep)?;
-        Ok(self.course.terminated)
+        let must_end = self.course.terminated;
+        Ok(CompletedStep {
+            has_event: !must_end && self.model.wants_event(),
+            must_end,
+        })
     }
 
     /// Commits the model's present point. If none exists the simulation must end: the standard

@@ -26,6 +26,7 @@ mod values;
 
 use std::sync::Arc;
 
+pub use exchange::{CompletedStep, EventResult};
 pub use fmu_state::FmuState;
 pub use step_mode::{CoSimulation, StepOutcome, StepProgress};
 pub use values::Reals;

@@ -324,7 +324,10 @@ impl<M: Model> Instance<M> {
                 let has_start = |c| {
                     matches!(
                         c,
-                        Causality::Parameter | Causality::Input | Causality::State
+                        Causality::Parameter
+                            | Causality::Input
+                            | Causality::StartedOutput
+                            | Causality::State
                     )
                 };
                 self.refuse(
@@ -334,7 +337,9 @@ impl<M: Model> Instance<M> {
                 )
             }
             State::StepMode if self.course.set_since_step => {
-                let is_computed = |c: Causality| c.is_output() || c == Causality::Local;
+                let is_computed = |c: Causality| {
+                    c.is_output() || matches!(c, Causality::Local | Causality::LocalState)
+                };
                 self.refuse(value_references, is_computed, |name| Error::NotStepped {
                     name,
                 })

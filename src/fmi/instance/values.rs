@@ -338,7 +338,9 @@ impl<M: Model> Instance<M> {
                 return Ok(variable);
             }
             Causality::Input => "a discrete input, which changes in event mode",
-            Causality::Parameter | Causality::State if initializing => return Ok(variable),
+            Causality::Parameter | Causality::StartedOutput | Causality::State if initializing => {
+                return Ok(variable);
+            }
             Causality::Parameter if variable.variability == Variability::Fixed => {
                 "a fixed parameter, and initialization has ended"
             }
@@ -348,7 +350,9 @@ impl<M: Model> Instance<M> {
             Causality::Parameter => return Ok(variable),
             Causality::CalculatedParameter => "a parameter derived from others",
             Causality::Output => "an output",
+            Causality::StartedOutput => "an output, and initialization has ended",
             Causality::State => "a state, and initialization has ended",
+            Causality::LocalState => "a state, which initialization computes",
             Causality::Local => "about the solver",
             Causality::Independent => "the time",
         };

@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::MechanismModel;
-use super::variables::Quantity;
+use super::variables::{Quantity, has_local_states};
 use crate::fmi::model_description::DependencyKind;
-use crate::fmi::variable::{Causality, Variable, place, states, value_reference};
+use crate::fmi::variable::{Causality, Variable, place, value_reference};
 use crate::kinematics::{Dependencies, ForceQuantity, OutputSource, Structure};
 use crate::mechanism::{Coordinate, DriverId, Load, Mechanism, Order, Signal, Variable as Of};
 
@@ -27,10 +27,10 @@ pub(super) struct KnownVariables {
 pub(super) struct DependencyTable<'a> {
     mechanism: &'a Mechanism,
     structure: &'a Structure,
-    /// Value references of all variables but outputs.
+    /// Value references of all variables but those that are mere outputs.
     references: HashMap<Quantity, u32>,
-    /// Value references of the continuous states.
-    states: Vec<u32>,
+    /// Whether the states are those of coordinates that change.
+    has_local_states: bool,
 }
 
 impl<'a> DependencyTable<'a> {
@@ -44,10 +44,7 @@ impl<'a> DependencyTable<'a> {
         Self {
             mechanism,
             structure,
-            states: states(variables)
-                .iter()
-                .map(|place| value_reference(*place))
-                .collect(),
+            has_local_states: has_local_states(variables),
             references: known
                 .map(|(place, variable)| (variable.quantity, value_reference(place)))
                 .collect(),
@@ -71,19 +68,15 @@ impl<'a> DependencyTable<'a> {
         }
         let has_input = origins.drivers.iter().any(|id| self.is_input(*id));
         let of_forces: Kinds = self.dependent(self.inputs_of_forces(force)).collect();
-        let own: Kinds = self
-            .dependent(self.parameters(unknown, &origins, order))
-            .collect();
+        let parameters = |origins: &_| -> Kinds {
+            self.dependent(self.parameters(unknown, origins, order))
+                .collect()
+        };
+        let own = parameters(&origins);
 
         // Nothing is extrapolated in initialization mode.
-        let mut initial: Kinds = self
-            .dependent(self.inputs(&origins, order, unknown))
-            .collect();
-        let states: Kinds = initial
-            .iter()
-            .filter(|(vr, _)| self.states.contains(vr))
-            .map(|(vr, kind)| (*vr, *kind))
-            .collect();
+        let mut initial: Kinds = self.dependent(self.inputs(&origins, order)).collect();
+        initial.extend(self.dependent(self.starts(&origins, order, unknown)));
         let angle = self.driver_angle(unknown);
         let angle = angle.and_then(|id| self.references.get(&Quantity::Input(id, Order::Position)));
         initial.extend(angle.map(|vr| (*vr, DependencyKind::Constant)));
@@ -92,14 +85,20 @@ impl<'a> DependencyTable<'a> {
             initial.extend(self.dependent([Quantity::RateSource]));
         }
 
+        // In other coordinates all that moves freely depends on all that moves.
+        let is_state = matches!(unknown, Quantity::State(_, order) if order < Order::Acceleration);
+        if self.has_local_states && !is_state && self.freedoms(&origins).next().is_some() {
+            for column in 0..3 * self.mechanism.bodies.len() {
+                origins.extend(self.structure.dependencies(column));
+            }
+        }
         // Estimated rates depend on positions, extrapolated positions on rates.
         let mut inputs: Kinds = self
-            .dependent(self.inputs(&origins, Order::Acceleration, unknown))
-            .filter(|(vr, _)| !self.states.contains(vr))
+            .dependent(self.inputs(&origins, Order::Acceleration))
             .collect();
-        inputs.extend(states);
+        inputs.extend(self.dependent(self.states(&origins, order, unknown)));
         inputs.extend(of_forces);
-        let mut parameters = own;
+        let mut parameters = parameters(&origins);
         if has_input {
             let settings = [Quantity::RateSource, Quantity::Extrapolation];
             parameters.extend(self.dependent(settings));
@@ -115,7 +114,9 @@ impl<'a> DependencyTable<'a> {
     /// motion on which it depends.
     fn order(&self, unknown: Quantity) -> Option<Order> {
         match unknown {
-            Quantity::Output(OutputSource::Signal(_, order)) => Some(order),
+            Quantity::Output(OutputSource::Signal(_, order)) | Quantity::State(_, order) => {
+                Some(order)
+            }
             Quantity::Output(OutputSource::Derived(index)) => {
                 Some(self.mechanism.derived[index].order())
             }
@@ -148,33 +149,51 @@ impl<'a> DependencyTable<'a> {
 
     /// Returns the first freedom whose acceleration a quantity of an order contains.
     fn accelerated(&self, origins: &Dependencies, order: Order) -> Option<DriverId> {
-        let is_free = |id: &&DriverId| self.mechanism.drivers[id.index()].is_free();
-        let mut freedoms = origins.drivers.iter().filter(is_free);
-        freedoms
-            .next()
-            .copied()
-            .filter(|_| order == Order::Acceleration)
+        let mut freedoms = self.freedoms(origins);
+        freedoms.next().filter(|_| order == Order::Acceleration)
     }
 
-    /// Returns the inputs of drivers and the states of freedoms up to an order, and the time for
-    /// prescribed motions.
-    fn inputs(&self, origins: &Dependencies, highest: Order, unknown: Quantity) -> Vec<Quantity> {
+    /// Returns the freedoms among the origins of a quantity.
+    fn freedoms(&self, origins: &Dependencies) -> impl Iterator<Item = DriverId> {
+        let drivers = origins.drivers.iter().copied();
+        drivers.filter(|id| self.mechanism.drivers[id.index()].is_free())
+    }
+
+    /// Returns the starts of freedoms, up to an order, on which a quantity depends in initialization
+    /// mode: values and velocities in the file's own coordinates.
+    fn starts(&self, origins: &Dependencies, highest: Order, unknown: Quantity) -> Vec<Quantity> {
+        let start = |id, order| Quantity::Output(OutputSource::Signal(Signal::Motion(id), order));
+        match unknown {
+            Quantity::State(id, order)
+            | Quantity::Output(OutputSource::Signal(Signal::Motion(id), order))
+                if self.mechanism.drivers[id.index()].is_free() && order < Order::Acceleration =>
+            {
+                vec![start(id, order)]
+            }
+            _ => both(self.freedoms(origins), highest, start),
+        }
+    }
+
+    /// Returns the states, up to an order, on which a quantity depends after initialization.
+    fn states(&self, origins: &Dependencies, highest: Order, unknown: Quantity) -> Vec<Quantity> {
+        if !self.has_local_states {
+            return self.starts(origins, highest, unknown);
+        }
+        match unknown {
+            Quantity::State(_, Order::Position | Order::Velocity) => vec![unknown],
+            _ => both(self.freedoms(origins), highest, Quantity::State),
+        }
+    }
+
+    /// Returns the inputs of drivers up to an order, and the time for prescribed motions.
+    fn inputs(&self, origins: &Dependencies, highest: Order) -> Vec<Quantity> {
         let mut inputs = Vec::new();
         for &id in &origins.drivers {
-            if self.mechanism.drivers[id.index()].is_free() {
-                let state =
-                    |order| Quantity::Output(OutputSource::Signal(Signal::Motion(id), order));
-                let orders = [Order::Position, Order::Velocity].map(state);
-                if orders.contains(&unknown) {
-                    inputs.push(unknown);
-                    continue;
-                }
-                let count = if highest == Order::Position { 1 } else { 2 };
-                inputs.extend(&orders[..count]);
-            } else if self.is_input(id) {
+            let driver = &self.mechanism.drivers[id.index()];
+            if driver.is_given() {
                 let orders = Order::ALL.into_iter().filter(|order| *order <= highest);
                 inputs.extend(orders.map(|order| Quantity::Input(id, order)));
-            } else {
+            } else if !driver.is_free() {
                 inputs.push(Quantity::Time);
             }
         }
@@ -270,6 +289,9 @@ impl<'a> DependencyTable<'a> {
                 }
             }
             Quantity::Output(OutputSource::Force(force)) => self.add_origins(force, &mut origins),
+            Quantity::State(freedom, _) => {
+                origins.drivers.insert(freedom);
+            }
             Quantity::Parameter(parameter) => origins.add_parameter(mechanism, parameter),
             _ => {}
         }
@@ -313,6 +335,18 @@ impl<'a> DependencyTable<'a> {
     }
 }
 
+/// Returns the values of freedoms and, if an order needs them, their velocities.
+fn both(
+    freedoms: impl Iterator<Item = DriverId>,
+    highest: Order,
+    quantity: impl Fn(DriverId, Order) -> Quantity,
+) -> Vec<Quantity> {
+    let count = if highest == Order::Position { 1 } else { 2 };
+    let orders = [Order::Position, Order::Velocity];
+    let all = freedoms.flat_map(|id| orders[..count].iter().map(move |order| (id, *order)));
+    all.map(|(id, order)| quantity(id, order)).collect()
+}
+
 impl MechanismModel {
     /// Returns the dependencies of an output or a calculated parameter, in initialization mode or
     /// after it; none of other variables.
@@ -321,15 +355,12 @@ impl MechanismModel {
         value_reference: u32,
         initializing: bool,
     ) -> Vec<(u32, DependencyKind)> {
-        let structure = self.solver.structure();
+        let own = self.free.as_ref().map(|free| free.own(&self.solver));
+        let structure = own.unwrap_or(&self.solver).structure();
         let table = DependencyTable::new(&self.mechanism, structure, &self.variables);
-        let Variable {
-            quantity,
-            causality,
-            ..
-        } = self.variables[place(value_reference)];
-        let mut known = table.of(quantity).unwrap_or_default();
-        if causality.is_output() && !initializing {
+        let variable = &self.variables[place(value_reference)];
+        let mut known = table.of(variable.quantity).unwrap_or_default();
+        if variable.is_unknown() && !initializing {
             known.inputs.extend(known.parameters);
             known.inputs.into_iter().collect()
         } else {

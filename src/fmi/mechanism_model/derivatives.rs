@@ -47,7 +47,8 @@ impl MechanismModel {
                     direction.parameters[parameter.index()] += change;
                 }
                 Quantity::Time => direction.time += change,
-                Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order)) => {
+                Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order))
+                | Quantity::State(freedom, order) => {
                     let state = &mut direction.drivers[freedom.index()];
                     match order {
                         Order::Position => state.value += change,
@@ -81,7 +82,8 @@ impl MechanismModel {
                 of_forces.as_ref().map_or(Ok(0.0), |f| f.change(force))
             }
             Quantity::Output(source) => source.change(&self.mechanism, &sensitivity),
-            _ => unreachable!("unknowns are outputs and parameters"),
+            Quantity::State(freedom, order) => Ok(order.of(direction.drivers[freedom.index()])),
+            _ => unreachable!("unknowns are outputs, states and parameters"),
         };
         let changes: Result<_, _> = unknowns.iter().map(change).collect();
         changes.map_err(without_value)

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use super::MechanismModel;
+use super::decisions::Decisions;
 use super::dependencies::{DependencyTable, Kinds};
-use super::guid::guid_without;
-use super::variables::{Quantity, variables_without};
+use super::guid::guid_decided;
+use super::variables::{Quantity, variables_of};
 use crate::fmi::model::Model;
 use crate::fmi::model_description::{Experiment, Member, ModelDescription, Terminal, Unknown};
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable, value_reference};
-use crate::kinematics::{Origin, OutputSource, Structure, System, omitted_reactions};
+use crate::kinematics::{OutputSource, Structure, System};
 use crate::mechanism::{Mechanism, Order, Unit, rounded};
 
 /// Returns the model description of a mechanism's FMU for a version of the standard.
@@ -20,18 +21,17 @@ pub fn describe<'a>(
     structure: &Structure,
     standard: Version,
 ) -> ModelDescription<'a, Quantity> {
-    let omitted = omitted_reactions(mechanism).unwrap_or_default();
-    describe_without(mechanism, structure, standard, &omitted)
+    describe_decided(mechanism, structure, standard, &Decisions::of(mechanism))
 }
 
-/// Returns the model description without the reactions of some joints and constraints.
-pub(super) fn describe_without<'a>(
+/// Returns the model description that follows from the decisions of an export.
+pub(super) fn describe_decided<'a>(
     mechanism: &'a Arc<Mechanism>,
     structure: &Structure,
     standard: Version,
-    omitted: &[Origin],
+    decisions: &Decisions,
 ) -> ModelDescription<'a, Quantity> {
-    let mut variables = variables_without(mechanism, omitted);
+    let mut variables = variables_of(mechanism, decisions);
     set_nominal(mechanism, &mut variables);
     let table = DependencyTable::new(mechanism, structure, &variables);
     let mut outputs = Vec::new();
@@ -42,19 +42,22 @@ pub(super) fn describe_without<'a>(
         let Some(known) = table.of(variable.quantity) else {
             continue;
         };
+        let unknown = Unknown {
+            value_reference,
+            dependencies: known.inputs,
+            parameters: known.parameters,
+        };
+        let of = variable.derivative_of.map(|of| variables[of].causality);
+        if of.is_some_and(Causality::is_state) {
+            derivatives.push(unknown.clone());
+        }
         if variable.causality.is_output() {
-            let unknown = Unknown {
-                value_reference,
-                dependencies: known.inputs,
-                parameters: known.parameters,
-            };
-            let of = variable.derivative_of.map(|of| variables[of].causality);
-            if of == Some(Causality::State) {
-                derivatives.push(unknown.clone());
-            }
             outputs.push(unknown);
         }
-        if variable.causality == Causality::State {
+        if matches!(
+            variable.causality,
+            Causality::State | Causality::StartedOutput
+        ) {
             continue;
         }
         initial_unknowns.push(Unknown {
@@ -72,7 +75,7 @@ pub(super) fn describe_without<'a>(
         version: mechanism.version.as_deref(),
         copyright: mechanism.copyright.as_deref(),
         license: mechanism.license.as_deref(),
-        guid: guid_without(mechanism, omitted),
+        guid: guid_decided(mechanism, decisions),
         experiment: Experiment {
             start: simulation.start,
             stop: simulation.stop,

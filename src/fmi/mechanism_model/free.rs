@@ -4,6 +4,7 @@
 //! them; in model exchange it does.
 
 use super::force_input::ForceInput;
+use super::variables::has_local_states;
 use super::{MechanismModel, failed, without_value};
 use crate::dynamics::Given;
 use crate::fmi::error::Failure;
@@ -133,12 +134,7 @@ impl MechanismModel {
         let taken = free.statistics().accepted.wrapping_sub(steps);
         let progress = &mut course.path_progress.substeps;
         *progress = progress.saturating_add(u32::try_from(taken).unwrap_or(u32::MAX));
-        let velocities = free.velocities();
-        for (freedom, velocity) in free.freedoms().iter().zip(velocities) {
-            let input = &mut course.inputs[freedom.index()];
-            input.set(Order::Position, solver.pose().drivers[freedom.index()]);
-            input.set(Order::Velocity, velocity);
-        }
+        self.note_states();
         self.log_crossings(log);
         moved.map_err(|error| Failure::Discarded(error.to_string()))
     }
@@ -183,6 +179,61 @@ impl MechanismModel {
         if let (Some(free), Some(state)) = (&mut self.free, &self.course.free) {
             let selected = free.select(&mut self.solver, &mut self.solution, state);
             debug_assert!(selected.is_ok(), "the coordinates were in use");
+        }
+    }
+
+    /// Returns whether the states are those of coordinates that are better exchanged at the committed
+    /// pose.
+    pub(super) fn wants_exchange(&mut self) -> bool {
+        has_local_states(&self.variables)
+            && self.solve_freedoms().is_ok()
+            && (self.free.as_mut()).is_some_and(|free| free.wants_exchange(&self.solver))
+    }
+
+    /// Goes on from the committed pose in the coordinates that are best there, if those in use are
+    /// not good any more. Returns whether it does: the states are others then.
+    ///
+    /// # Errors
+    ///
+    /// Freedoms have no acceleration there.
+    pub(super) fn exchange_states(&mut self) -> Result<bool, Failure> {
+        if !self.wants_exchange() {
+            return Ok(false);
+        }
+        self.set_path(self.course.time, 0.0);
+        let Self {
+            free: Some(free),
+            solver,
+            solution,
+            path,
+            course,
+            ..
+        } = self
+        else {
+            return Ok(false);
+        };
+        let given = StepInputs {
+            path,
+            forces: &course.force_inputs,
+        };
+        let exchanged = free.exchange(solver, solution, &given);
+        let state = course.free.as_mut().expect("made with the motion");
+        free.save(state);
+        self.note_states();
+        self.set_driver_rates(self.course.time, 0.0, 0.0);
+        self.commit_pose();
+        exchanged.map_err(without_value)
+    }
+
+    /// Takes values and velocities of the coordinates in use for those that the host gives.
+    fn note_states(&mut self) {
+        let (Some(free), pose) = (&self.free, self.solver.pose()) else {
+            return;
+        };
+        for (freedom, velocity) in free.freedoms().iter().zip(free.velocities()) {
+            let input = &mut self.course.inputs[freedom.index()];
+            input.set(Order::Position, pose.drivers[freedom.index()]);
+            input.set(Order::Velocity, velocity);
         }
     }
 

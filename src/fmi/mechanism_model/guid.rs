@@ -4,30 +4,27 @@ use std::sync::Arc;
 
 use uuid::Uuid;
 
+use super::decisions::Decisions;
 use super::variables::{FORCE_TABLE_VERSION, TABLE_VERSION};
-use crate::kinematics::{Origin, omitted_reactions};
 use crate::mechanism::Mechanism;
 
 /// Name space of biela's GUIDs, an arbitrary constant.
 const NAMESPACE: Uuid = Uuid::from_u128(0x8d0c_61f7_2f0e_4b36_9a53_b1e1_a0f0_0d1e);
 
 /// Returns the GUID of a mechanism's FMU: a hash of its values and tables, of the version of the table
-/// of variables, and of the reactions that it omits. Comments and layout of the file have no effect.
+/// of variables, and of the decisions of its export. Comments and layout of the file have no effect.
 #[must_use]
 pub fn guid(mechanism: &Mechanism) -> String {
-    let omitted = omitted_reactions(&Arc::new(mechanism.clone()));
-    guid_without(mechanism, &omitted.unwrap_or_default())
+    guid_decided(mechanism, &Decisions::of(&Arc::new(mechanism.clone())))
 }
 
-/// Returns the GUID of the FMU that omits the reactions of some joints and constraints.
-pub(super) fn guid_without(mechanism: &Mechanism, omitted: &[Origin]) -> String {
+/// Returns the GUID of the FMU that follows from the decisions of an export.
+pub(super) fn guid_decided(mechanism: &Mechanism, decisions: &Decisions) -> String {
     let mut content = format!("biela {TABLE_VERSION}\n{}", mechanism.canonical);
     if mechanism.has_dynamics() {
         content += &format!("\nforces {FORCE_TABLE_VERSION}");
     }
-    for origin in omitted {
-        content += &format!("\nwithout {}", origin.name(mechanism));
-    }
+    content += &decisions.canonical(mechanism);
     format!("{{{}}}", Uuid::new_v5(&NAMESPACE, content.as_bytes()))
 }
 

@@ -3,6 +3,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `variables` | the table of variables |
+//! | `decisions` | what an export decides by numbers |
 //! | `dependencies` | the variables on which another one depends |
 //! | `description`, `guid`, `resource` | the FMU's files |
 //! | `rule` | the parameters `rates` and `extrapolation`, and the sources of rates |
@@ -19,6 +20,7 @@
 //! | `derivatives` | directional derivatives |
 //! | `state` | the saved state |
 
+mod decisions;
 mod dependencies;
 mod derivatives;
 mod description;
@@ -56,21 +58,21 @@ use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::dynamics::{FreeMotion, FreeState};
 use crate::kinematics::{
-    self, Forces, Origin, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
-    omitted_reactions,
+    self, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
 };
 use crate::mechanism::{
     Driver, DriverId, DriverSource, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource,
     Signal, rounded,
 };
+use decisions::Decisions;
 use force_input::ForceInput;
-use guid::guid_without;
+use guid::guid_decided;
 use input::DriverInput;
 use monitor::Monitor;
 use outputs::Reals;
 use parts::Parts;
 use rule::{Rule, Source};
-use variables::variables_without;
+use variables::variables_of;
 
 /// A mechanism at the values that a host has set.
 #[derive(Debug)]
@@ -204,15 +206,15 @@ impl MechanismModel {
     ///
     /// The mechanism does not assemble.
     pub fn new(mechanism: Arc<Mechanism>, interface: Interface) -> Result<Self, kinematics::Error> {
-        let omitted = omitted_reactions(&mechanism).unwrap_or_default();
-        Self::without(mechanism, interface, &omitted)
+        let decisions = Decisions::of(&mechanism);
+        Self::decided(mechanism, interface, &decisions)
     }
 
-    /// Assembles a mechanism whose FMU omits the reactions of some joints and constraints.
-    fn without(
+    /// Assembles a mechanism whose FMU follows from the decisions of its export.
+    fn decided(
         mechanism: Arc<Mechanism>,
         interface: Interface,
-        omitted: &[Origin],
+        decisions: &Decisions,
     ) -> Result<Self, kinematics::Error> {
         let path = Path::new(&mechanism);
         let solver = Solver::assembled(Arc::clone(&mechanism), &path)?;
@@ -227,10 +229,10 @@ impl MechanismModel {
         let tolerance = mechanism.simulation.tolerance;
         // The reader admits no tolerance that the integrator refuses.
         let free = FreeMotion::new(&solver, tolerance).unwrap_or_default();
-        let variables = variables_without(&mechanism, omitted);
+        let variables = variables_of(&mechanism, decisions);
         let free_state = free.as_ref().map(FreeMotion::state);
         Ok(Self {
-            guid: guid_without(&mechanism, omitted),
+            guid: guid_decided(&mechanism, decisions),
             interface,
             reals: Reals::new(&mechanism, &variables),
             variables,
@@ -315,8 +317,8 @@ impl Model for MechanismModel {
     };
 
     fn load(resources: &FilePath, interface: Interface) -> Result<Self, Failure> {
-        let (mechanism, omitted) = resource::read(resources)?;
-        Self::without(mechanism, interface, &omitted).map_err(failed)
+        let (mechanism, decisions) = resource::read(resources)?;
+        Self::decided(mechanism, interface, &decisions).map_err(failed)
     }
 
     fn guid(&self) -> &str {
@@ -374,9 +376,8 @@ impl Model for MechanismModel {
                     self.set_parameter(parameter, value);
                     parameters_changed = true;
                 }
-                Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order)) => {
-                    self.set_input(freedom, order, value);
-                }
+                Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order))
+                | Quantity::State(freedom, order) => self.set_input(freedom, order, value),
                 _ => unreachable!("only inputs, states and parameters are settable"),
             }
         }
@@ -443,13 +444,16 @@ impl Model for MechanismModel {
     }
 
     fn nominal(&self, quantity: Quantity) -> f64 {
-        let kind = match quantity {
-            Quantity::Output(OutputSource::Signal(Signal::Motion(driver), _)) => {
-                self.mechanism.drivers[driver.index()].coordinate.kind
-            }
-            _ => unreachable!("states are freedoms"),
+        let mechanism = match quantity {
+            Quantity::Output(_) => &self.mechanism,
+            _ => self.solver.mechanism(),
         };
-        if kind.is_angle() {
+        let (Quantity::Output(OutputSource::Signal(Signal::Motion(driver), _))
+        | Quantity::State(driver, _)) = quantity
+        else {
+            unreachable!("states are freedoms")
+        };
+        if mechanism.drivers[driver.index()].coordinate.kind.is_angle() {
             1.0
         } else {
             rounded(self.solver.size(), 1)
@@ -476,6 +480,14 @@ impl Model for MechanismModel {
 
     fn update_discrete(&mut self) {
         self.course.progress = self.course.path_progress;
+    }
+
+    fn wants_event(&mut self) -> bool {
+        self.wants_exchange()
+    }
+
+    fn exchange_states(&mut self) -> Result<bool, Failure> {
+        MechanismModel::exchange_states(self)
     }
 
     #[inline(always)]

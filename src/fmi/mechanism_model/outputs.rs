@@ -8,7 +8,7 @@ use crate::fmi::model::Groups;
 use crate::fmi::state::Phase;
 use crate::fmi::variable::{Variable, derivatives};
 use crate::kinematics::{ForceParts, OutputSource};
-use crate::mechanism::{Mechanism, Order, Signal};
+use crate::mechanism::{Jet, Mechanism, Order, Signal};
 
 /// Inputs, parameters, time, and counts of the last step.
 const SETTINGS: Groups = 1;
@@ -89,6 +89,7 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
             (DERIVED, mechanism.derived[index].order())
         }
         Quantity::Output(OutputSource::Signal(signal, order)) => (group_of(signal), order),
+        Quantity::State(_, order) => (COORDINATES, order),
     };
     if order == Order::Position {
         group
@@ -248,6 +249,10 @@ impl MechanismModel {
                 Quantity::Iterations => f64::from(self.course.progress.iterations),
                 Quantity::Substeps => f64::from(self.course.progress.substeps),
                 Quantity::Proved => f64::from(u8::from(self.course.progress.checked == 0)),
+                Quantity::State(freedom, order) => order.of(Jet {
+                    value: solver.pose().drivers[freedom.index()],
+                    ..driver_rates[freedom.index()]
+                }),
                 Quantity::Output(OutputSource::Derived(index)) => {
                     solver.derived(index, rates, driver_rates)
                 }

@@ -1,58 +1,24 @@
 //! The mechanism inside an FMU.
 
-use std::fs;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+use super::decisions::Decisions;
 use super::variables::Quantity;
 use crate::fmi::error::Failure;
 use crate::fmi::model_description::{Document, ModelDescription};
 use crate::fmi::package::{self, RuntimeLibrary};
-use crate::kinematics::{Origin, omitted_reactions};
 use crate::mechanism::{Mechanism, Severity, Source};
 
 /// Name of the mechanism's file in `resources/`.
 pub const RESOURCE: &str = "mechanism.toml";
 
-/// Name of the file in `resources/` that lists the joints and constraints whose reactions are no
-/// variables, one name per line. The export decides by a numerical rank. Another processor might
-/// decide otherwise, and value references would shift.
-const OMITTED_REACTIONS: &str = "omitted_reactions.txt";
-
-/// Reads the mechanism from the folder of resources, and the joints and constraints whose reactions it
-/// omits.
-pub(super) fn read(resources: &Path) -> Result<(Arc<Mechanism>, Vec<Origin>), Failure> {
+/// Reads the mechanism from the folder of resources, and the decisions of its export.
+pub(super) fn read(resources: &Path) -> Result<(Arc<Mechanism>, Decisions), Failure> {
     let mechanism = Arc::new(read_mechanism(resources)?);
-    let omitted = read_omitted(resources, &mechanism)?.unwrap_or_default();
-    Ok((mechanism, omitted))
-}
-
-/// Reads the joints and constraints whose reactions are omitted, if they are listed.
-fn read_omitted(resources: &Path, mechanism: &Mechanism) -> Result<Option<Vec<Origin>>, Failure> {
-    let path = resources.join(OMITTED_REACTIONS);
-    let text = match fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => {
-            let path = path.display();
-            return Err(Failure::Failed(format!("cannot read `{path}`: {error}")));
-        }
-    };
-    let joints = (0..mechanism.joints.len()).map(Origin::Joint);
-    let constraints = (0..mechanism.constraints.len()).map(Origin::Constraint);
-    let origins: Vec<_> = joints.chain(constraints).collect();
-    let named = |name: &str| {
-        let mut origins = origins.iter();
-        let found = origins.find(|origin| origin.name(mechanism) == name);
-        found.copied().ok_or_else(|| {
-            Failure::Failed(format!(
-                "`{OMITTED_REACTIONS}` names `{name}`, which is no joint or constraint of \
-                 `{RESOURCE}`: the resources do not belong together"
-            ))
-        })
-    };
-    text.lines().map(named).collect::<Result<_, _>>().map(Some)
+    let decisions = Decisions::read(resources, &mechanism)?;
+    Ok((mechanism, decisions))
 }
 
 /// Reads the mechanism from the folder of resources.
@@ -87,14 +53,10 @@ pub fn write_fmu(
     documents: &[Document],
     generated: Option<&str>,
 ) -> io::Result<()> {
-    let omitted = omitted_reactions(mechanism);
-    let listed = omitted.map(|omitted| {
-        let names = omitted.iter().map(|origin| origin.name(mechanism));
-        names.fold(String::new(), |list, name| list + name + "\n")
-    });
+    let decisions = Decisions::of(mechanism).files(mechanism);
     let mut resources = vec![(RESOURCE, source.text().as_bytes())];
-    if let Some(list) = &listed {
-        resources.push((OMITTED_REACTIONS, list.as_bytes()));
+    for (name, text) in &decisions {
+        resources.push((name, text.as_bytes()));
     }
     for file in &mechanism.table_files {
         resources.push((file.name.as_str(), file.text.as_bytes()));
@@ -113,11 +75,13 @@ pub fn write_fmu(
 mod tests {
     use super::*;
     use crate::fmi::mechanism_model::MechanismModel;
-    use crate::fmi::mechanism_model::description::{describe, describe_without};
-    use crate::fmi::mechanism_model::guid::guid_without;
+    use crate::fmi::mechanism_model::decisions::OMITTED_REACTIONS;
+    use crate::fmi::mechanism_model::description::{describe, describe_decided};
+    use crate::fmi::mechanism_model::guid::guid_decided;
     use crate::fmi::model::Model as _;
     use crate::fmi::state::{Interface, Version};
-    use crate::kinematics::Solver;
+    use crate::kinematics::{Origin, Solver, omitted_reactions};
+    use std::fs;
 
     /// A bar on three cranks: the reactions of its three pins are indeterminate.
     const THREE_CRANKS: &str = r#"
@@ -193,12 +157,16 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
         assert_eq!(files.len(), 2);
         let solver = Solver::new(Arc::clone(&mechanism)).unwrap();
         let all: Vec<_> = (0..mechanism.joints.len()).map(Origin::Joint).collect();
-        let here = omitted_reactions(&mechanism).expect("there are redundant constraints");
+        let here = omitted_reactions(&mechanism);
         assert!(!here.is_empty(), "indeterminate reactions are omitted");
         let mut guids = Vec::new();
         for omitted in [&here[..], &[], &all[..1], &all[1..3], &all[..5]] {
+            let decisions = Decisions {
+                omitted: omitted.to_vec(),
+                has_local_states: false,
+            };
             let description =
-                describe_without(&mechanism, solver.structure(), Version::Fmi2, omitted);
+                describe_decided(&mechanism, solver.structure(), Version::Fmi2, &decisions);
             let mut files = files.clone();
             let names = omitted.iter().map(|origin| origin.name(&mechanism));
             let list: String = names.map(|name| format!("{name}\n")).collect();
@@ -226,7 +194,7 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
         let mut without = files.clone();
         without.remove(place);
         let guid = load(&without).unwrap().guid().to_owned();
-        assert_eq!(guid, guid_without(&mechanism, &[]));
+        assert_eq!(guid, guid_decided(&mechanism, &Decisions::default()));
         assert_ne!(guid, super::super::guid(&mechanism));
     }
 

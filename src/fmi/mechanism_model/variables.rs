@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
+use super::decisions::Decisions;
 use super::rule::{EXTRAPOLATION, RATES};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
-use crate::kinematics::{Dependencies, Origin, Output, OutputSource, omitted_reactions};
+use crate::kinematics::{Dependencies, Output, OutputSource};
 use crate::mechanism::{
     Driver, DriverId, DriverSource, Mechanism, Order, ParameterId, Signal, Unit,
 };
@@ -30,6 +31,8 @@ pub enum Quantity {
     Extrapolation,
     /// An output of a run.
     Output(OutputSource),
+    /// Value, velocity or acceleration of the coordinate in use for a freedom.
+    State(DriverId, Order),
     /// Largest scaled residual of the constraint equations.
     Residual,
     /// Scaled reciprocal condition of the Jacobian.
@@ -46,17 +49,17 @@ pub enum Quantity {
 
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
 /// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
-/// from others, forces, solver, time; in the file's order within each group.
+/// from others, forces, solver, time, states that are no outputs; in the file's order within each
+/// group.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
-    let omitted = omitted_reactions(mechanism).unwrap_or_default();
-    variables_without(mechanism, &omitted)
+    variables_of(mechanism, &Decisions::of(mechanism))
 }
 
-/// Returns the variables without the reactions of some joints and constraints.
-pub(super) fn variables_without(
+/// Returns the variables that follow from the decisions of an export.
+pub(super) fn variables_of(
     mechanism: &Mechanism,
-    omitted: &[Origin],
+    decisions: &Decisions,
 ) -> Vec<Variable<Quantity>> {
     let mut table = Table::default();
     table.add_inputs(mechanism);
@@ -65,7 +68,7 @@ pub(super) fn variables_without(
     if mechanism.drivers.iter().any(Driver::is_given) {
         table.add_settings(mechanism);
     }
-    table.add_outputs(mechanism, omitted);
+    table.add_outputs(mechanism, decisions);
     table.add_solver();
     table.add(
         "time",
@@ -74,7 +77,16 @@ pub(super) fn variables_without(
         (Causality::Independent, Variability::Continuous),
         Kind::real(Some(Unit::SECOND), None),
     );
+    if decisions.has_local_states {
+        table.add_local_states(mechanism);
+    }
     table.list
+}
+
+/// Returns whether some of the variables are states that are no outputs.
+pub(super) fn has_local_states(variables: &[Variable<Quantity>]) -> bool {
+    let mut variables = variables.iter();
+    variables.any(|variable| variable.causality == Causality::LocalState)
 }
 
 #[derive(Default)]
@@ -203,20 +215,60 @@ impl Table {
         );
     }
 
-    fn add_outputs(&mut self, mechanism: &Mechanism, omitted: &[Origin]) {
-        for output in Output::of_host(mechanism, omitted) {
+    fn add_outputs(&mut self, mechanism: &Mechanism, decisions: &Decisions) {
+        for output in Output::of_host(mechanism, &decisions.omitted) {
             let quantity = Quantity::Output(output.source);
             let unit = match output.source {
                 // It may have none.
                 OutputSource::Derived(index) => mechanism.derived[index].unit,
                 _ => Some(output.unit),
             };
-            let start = start_of_state(mechanism, output.source);
+            let start = start_of_freedom(mechanism, output.source);
             let causality = match start {
+                Some(_) if decisions.has_local_states => Causality::StartedOutput,
                 Some(_) => Causality::State,
                 None => Causality::Output,
             };
             self.add_named(output, quantity, causality, Kind::real(unit, start));
+        }
+    }
+
+    /// Adds value, velocity and acceleration of the coordinates in use. They have no unit: an angle may
+    /// take the place of a length.
+    fn add_local_states(&mut self, mechanism: &Mechanism) {
+        let drivers = mechanism.drivers.iter().enumerate();
+        let freedoms = drivers.filter(|(_, driver)| driver.is_free());
+        for (count, (index, _)) in freedoms.enumerate() {
+            let (value, velocity) = (2 * count + 1, 2 * count + 2);
+            let of = |order| format!("{order} of a coordinate in use for the free motion [SI]");
+            for (name, order, causality) in [
+                (
+                    format!("state[{value}]"),
+                    Order::Position,
+                    Causality::LocalState,
+                ),
+                (
+                    format!("state[{velocity}]"),
+                    Order::Velocity,
+                    Causality::LocalState,
+                ),
+                (
+                    format!("der(state[{velocity}])"),
+                    Order::Acceleration,
+                    Causality::Local,
+                ),
+            ] {
+                let place = self.list.len();
+                let quantity = Quantity::State(DriverId(index), order);
+                let description = match order {
+                    Order::Position => of("value"),
+                    Order::Velocity => of("velocity"),
+                    Order::Acceleration => of("acceleration"),
+                };
+                let traits = (causality, Variability::Continuous);
+                self.add(name, description, quantity, traits, Kind::real(None, None));
+                self.list[place].derivative_of = (order > Order::Position).then(|| place - 1);
+            }
         }
     }
 
@@ -260,8 +312,8 @@ impl Table {
     }
 }
 
-/// Returns the start of an output that is a continuous state: value and velocity of a freedom.
-fn start_of_state(mechanism: &Mechanism, output: OutputSource) -> Option<f64> {
+/// Returns the start of value and velocity of a freedom.
+fn start_of_freedom(mechanism: &Mechanism, output: OutputSource) -> Option<f64> {
     let OutputSource::Signal(Signal::Motion(driver), order) = output else {
         return None;
     };

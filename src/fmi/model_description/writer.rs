@@ -337,7 +337,7 @@ fn write_variable<Q>(
     variables: &[Variable<Q>],
 ) -> io::Result<()> {
     let variable = &variables[place];
-    let is_state = |place: usize| variables[place].causality == Causality::State;
+    let is_state = |place: usize| variables[place].causality.is_state();
     let (element, variability) = match (&variable.kind, standard) {
         (Kind::Real { .. }, Version::Fmi2) => ("Real", variable.variability),
         (Kind::Real { .. }, Version::Fmi3) => ("Float64", variable.variability),
@@ -423,8 +423,8 @@ fn causality_name(causality: Causality) -> &'static str {
         Causality::Parameter => "parameter",
         Causality::CalculatedParameter => "calculatedParameter",
         Causality::Input => "input",
-        Causality::Output | Causality::State => "output",
-        Causality::Local => "local",
+        Causality::Output | Causality::StartedOutput | Causality::State => "output",
+        Causality::Local | Causality::LocalState => "local",
         Causality::Independent => "independent",
     }
 }
@@ -441,8 +441,11 @@ fn variability_name(variability: Variability) -> &'static str {
 /// Returns the attribute `initial` of variables of a causality.
 fn initial_name(causality: Causality) -> Option<&'static str> {
     match causality {
-        Causality::Parameter | Causality::State => Some("exact"),
-        Causality::CalculatedParameter | Causality::Output | Causality::Local => Some("calculated"),
+        Causality::Parameter | Causality::StartedOutput | Causality::State => Some("exact"),
+        Causality::CalculatedParameter
+        | Causality::Output
+        | Causality::LocalState
+        | Causality::Local => Some("calculated"),
         Causality::Input | Causality::Independent => None,
     }
 }

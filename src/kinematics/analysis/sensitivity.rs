@@ -67,6 +67,8 @@ pub struct Sensitivity<'a> {
     drivers: Vec<Varied>,
     parameters: Vec<Varied>,
     measures: &'a [Box<dyn Constraint>],
+    /// The file's coordinates of freedoms that are followed in others.
+    named: &'a [Option<Box<dyn Constraint>>],
     system: &'a System,
     /// The cause of derivatives that are not numbers, if it is not that of an expression.
     fault: Option<Error>,
@@ -208,7 +210,10 @@ impl Sensitivity<'_> {
             Signal::Body(body, component) => self.at.coordinate(3 * body.index() + component),
             Signal::Marker(marker, component) => self.at.marker(marker).point[component],
             Signal::Measure(index) => self.measures[index].along(&self.mechanism()),
-            Signal::Motion(driver) => self.driver_value(driver),
+            Signal::Motion(driver) => match &self.named[driver.index()] {
+                Some(own) => own.along(&self.mechanism()),
+                None => self.driver_value(driver),
+            },
         }
     }
 }
@@ -428,6 +433,7 @@ impl State {
             drivers,
             parameters,
             measures: &compiled.measures,
+            named: &compiled.named,
             system,
             fault: None,
         }

@@ -116,6 +116,16 @@ impl DerefMut for BlockSolver {
 }
 
 impl BlockPlan {
+    /// Returns whether no block is solved by iteration.
+    pub(super) fn is_explicit(&self) -> bool {
+        self.blocks.iter().all(|block| {
+            matches!(
+                block,
+                BlockSolver::PinnedBody(_) | BlockSolver::ExplicitUnknown(_)
+            )
+        })
+    }
+
     /// Returns an estimate of the work of a sub-step, in that of one row in closed form.
     pub(super) fn work(&self) -> f64 {
         self.blocks.iter().map(|block| block.work()).sum()

@@ -104,7 +104,7 @@ impl Output {
             list.add_driver(mechanism, DriverId(index));
         }
         list.add_places(mechanism);
-        let omitted = omitted_reactions(mechanism).unwrap_or_default();
+        let omitted = omitted_reactions(mechanism);
         list.add_derived_and_forces(mechanism, &omitted);
         list.0
     }
@@ -360,23 +360,17 @@ impl List {
 }
 
 /// Returns the joints and constraints whose reactions are no outputs, since redundant constraints leave
-/// them indeterminate. `None` where the file alone decides: no masses or forces, no redundant
-/// constraints, or reactions of least norm. Otherwise a rank decides, at the file's own values, which
-/// rounding may change; no joint is omitted if the mechanism does not assemble there.
+/// them indeterminate. A rank decides, at the file's own values, which rounding may change; no joint is
+/// omitted if the mechanism does not assemble there.
 #[must_use]
-pub fn omitted_reactions(mechanism: &Arc<Mechanism>) -> Option<Vec<Origin>> {
+pub fn omitted_reactions(mechanism: &Arc<Mechanism>) -> Vec<Origin> {
     let omits = mechanism.outputs.indeterminate == Indeterminate::Omit;
     let system = System::new(Arc::clone(mechanism));
     if !mechanism.has_dynamics() || !omits || system.equations().len() <= system.unknowns() {
-        return None;
+        return Vec::new();
     }
-    let Ok(mut solver) = Solver::new(Arc::clone(system.mechanism())) else {
-        return Some(Vec::new());
-    };
-    Some(match solver.assemble(&Path::new(mechanism)) {
-        Ok(_) => solver.indeterminate(),
-        Err(_) => Vec::new(),
-    })
+    let solver = Solver::assembled(Arc::clone(mechanism), &Path::new(mechanism));
+    solver.map_or_else(|_| Vec::new(), |mut solver| solver.indeterminate())
 }
 
 /// Returns the file's own description of a coordinate, or else what it measures.

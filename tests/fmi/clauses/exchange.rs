@@ -18,7 +18,12 @@ fn a_getter_discards_and_an_accepted_step_ends_the_simulation() {
     let mut instance = started(heard.instance(shipped("tlv"), Interface::ModelExchange, false));
     instance.set_time(0.1).expect("legal");
     set(&mut instance, [(LENGTH, 0.6)]);
-    assert_eq!(instance.completed_integrator_step(), Ok(false));
+    assert_eq!(
+        instance
+            .completed_integrator_step()
+            .map(|step| step.must_end),
+        Ok(false)
+    );
     let accepted = get(&mut instance, ["arm.phi"]);
 
     instance.set_time(0.2).expect("legal");
@@ -29,7 +34,12 @@ fn a_getter_discards_and_an_accepted_step_ends_the_simulation() {
     heard.take_all();
 
     // Neither `fmi2CompletedIntegratorStep` nor `fmi2EnterEventMode` may discard.
-    assert_eq!(instance.completed_integrator_step(), Ok(true));
+    assert_eq!(
+        instance
+            .completed_integrator_step()
+            .map(|step| step.must_end),
+        Ok(true)
+    );
     let log = heard.take_all();
     let [message] = &log[..] else {
         panic!("{log:?}")
@@ -38,11 +48,17 @@ fn a_getter_discards_and_an_accepted_step_ends_the_simulation() {
     assert!(message.text.contains("the simulation must end: dead point"));
     assert_eq!(instance.enter_event_mode(), Ok(()));
     assert_eq!(instance.state(), State::EventMode);
-    assert_eq!(instance.new_discrete_states(), Ok(true));
+    assert_eq!(
+        instance.new_discrete_states().map(|event| event.must_end),
+        Ok(true)
+    );
 
     // The last accepted pose stays; a host that goes on from there may.
     set(&mut instance, [(LENGTH, 0.6)]);
-    assert_eq!(instance.new_discrete_states(), Ok(false));
+    assert_eq!(
+        instance.new_discrete_states().map(|event| event.must_end),
+        Ok(false)
+    );
     assert_eq!(get(&mut instance, ["arm.phi"]), accepted);
 }
 
@@ -61,7 +77,12 @@ fn integers_are_read_beyond_a_dead_point_and_change_at_events_only() {
     set(&mut instance, [(LENGTH, 0.6)]);
     get(&mut instance, ["arm.phi"]);
     assert_eq!(read(&mut instance), at_start);
-    assert_eq!(instance.completed_integrator_step(), Ok(false));
+    assert_eq!(
+        instance
+            .completed_integrator_step()
+            .map(|step| step.must_end),
+        Ok(false)
+    );
     assert_eq!(read(&mut instance), at_start);
     instance.enter_event_mode().expect("legal");
     assert_ne!(read(&mut instance), at_start);
@@ -78,7 +99,12 @@ fn a_step_accepted_beyond_the_stop_time_is_an_error() {
     initialized(&mut instance);
     // Hosts add up steps: 1e-12 s is rounding.
     instance.set_time(1.0 + 1e-12).expect("rounding");
-    assert_eq!(instance.completed_integrator_step(), Ok(false));
+    assert_eq!(
+        instance
+            .completed_integrator_step()
+            .map(|step| step.must_end),
+        Ok(false)
+    );
     instance.set_time(1.1).expect("a trial");
     get(&mut instance, ["arm.phi"]);
     let errors = [
@@ -94,7 +120,12 @@ fn a_step_accepted_beyond_the_stop_time_is_an_error() {
     // Without a stop time there is none.
     let mut endless = started(instance_of(shipped("tlv"), Interface::ModelExchange));
     endless.set_time(1e6).expect("legal");
-    assert_eq!(endless.completed_integrator_step(), Ok(false));
+    assert_eq!(
+        endless
+            .completed_integrator_step()
+            .map(|step| step.must_end),
+        Ok(false)
+    );
 }
 
 /// With nx = 0 and nz = 0 these are answered in initialization mode too (3.2.3).
@@ -150,13 +181,21 @@ fn values_after_the_end_are_those_of_the_inputs_set_last() {
         let mut instance = started(instance_of(shipped("four_bar"), Interface::ModelExchange));
         instance.set_time(0.1).expect("legal");
         set(&mut instance, [(crank, 1.1)]);
-        assert_eq!(instance.completed_integrator_step(), Ok(false));
+        assert_eq!(
+            instance
+                .completed_integrator_step()
+                .map(|step| step.must_end),
+            Ok(false)
+        );
         if in_event_mode {
             instance.enter_event_mode().expect("legal");
         }
         set(&mut instance, [(crank, 1.3)]);
         if in_event_mode {
-            assert_eq!(instance.new_discrete_states(), Ok(false));
+            assert_eq!(
+                instance.new_discrete_states().map(|event| event.must_end),
+                Ok(false)
+            );
         }
         instance.terminate().expect("legal");
         assert_eq!(get(&mut instance, [crank, "crank.phi"]), [1.3, 1.3]);

@@ -45,7 +45,7 @@ fn start(mut instance: Instance, agreed: CoSimulation) -> Instance {
     instance.exit_initialization_mode().expect("it starts");
     if event_mode_used {
         assert_eq!(instance.state(), State::EventMode);
-        assert!(!instance.new_discrete_states().expect("legal"));
+        assert!(!instance.new_discrete_states().expect("legal").must_end);
         instance.enter_step_mode().expect("legal");
     }
     assert_eq!(instance.state(), State::StepMode);
@@ -159,7 +159,7 @@ fn outputs_are_read_after_a_step_or_in_event_mode() {
     assert_ne!(get(&mut instance, ["arm.phi"]), now);
     set(&mut instance, [("side_length.position", 0.45)]);
     assert_eq!(get(&mut instance, ["arm.phi"]), now);
-    assert!(!instance.new_discrete_states().unwrap());
+    assert!(!instance.new_discrete_states().unwrap().must_end);
     instance.enter_step_mode().unwrap();
     assert_eq!(get(&mut instance, ["arm.phi"]), now);
     step(&mut instance, 0.0, 0.1);
@@ -317,7 +317,7 @@ fn a_jump_beyond_a_dead_point_ends_at_the_start_of_the_step() {
     // An event at which no pose exists ends the simulation.
     instance.enter_event_mode().unwrap();
     set(&mut instance, [("side_length.position", 0.95)]);
-    assert!(instance.new_discrete_states().unwrap());
+    assert!(instance.new_discrete_states().unwrap().must_end);
 }
 
 /// 2.3.1: nothing is logged while logging is off, the warning of a dead point included.

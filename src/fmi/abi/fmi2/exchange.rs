@@ -12,17 +12,17 @@ instance_calls! {
     fmi2EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
     /// `fmi2SetTime`.
     fmi2SetTime(time: fmi2Real) = |instance| instance.set_time(time);
-    /// `fmi2NewDiscreteStates`: there are no discrete states. The simulation ends at an event for
-    /// whose values no pose exists.
+    /// `fmi2NewDiscreteStates`: there are no discrete states. The continuous states may be
+    /// exchanged. The simulation ends at an event for whose values no pose exists.
     fmi2NewDiscreteStates(event_info: *mut fmi2EventInfo) = |instance| {
         instance.allow(Call::NewDiscreteStates)?;
         let to = room("fmi2eventInfo", event_info, 1)?;
-        let must_end = instance.new_discrete_states()?;
+        let event = instance.new_discrete_states()?;
         fill(to, [fmi2EventInfo {
             newDiscreteStatesNeeded: fmi2False,
-            terminateSimulation: must_end.into(),
-            nominalsOfContinuousStatesChanged: fmi2False,
-            valuesOfContinuousStatesChanged: fmi2False,
+            terminateSimulation: event.must_end.into(),
+            nominalsOfContinuousStatesChanged: event.states_changed.into(),
+            valuesOfContinuousStatesChanged: event.states_changed.into(),
             nextEventTimeDefined: fmi2False,
             nextEventTime: 0.0,
         }]);
@@ -38,9 +38,9 @@ instance_calls! {
         instance.allow(Call::CompletedIntegratorStep)?;
         let enter = room("enterEventMode", enter_event_mode, 1)?;
         let terminate = room("terminateSimulation", terminate_simulation, 1)?;
-        let must_end = instance.completed_integrator_step()?;
-        fill(enter, [fmi2False]);
-        fill(terminate, [must_end.into()]);
+        let step = instance.completed_integrator_step()?;
+        fill(enter, [step.has_event.into()]);
+        fill(terminate, [step.must_end.into()]);
         Ok(())
     };
     /// `fmi2SetContinuousStates`.

@@ -14,8 +14,8 @@ instance_calls! {
     fmi3EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
     /// `fmi3SetTime`.
     fmi3SetTime(time: fmi3Float64) = |instance| instance.set_time(time);
-    /// `fmi3UpdateDiscreteStates`: there are no discrete states. The simulation ends at an event for
-    /// whose values no pose exists.
+    /// `fmi3UpdateDiscreteStates`: there are no discrete states. The continuous states may be
+    /// exchanged. The simulation ends at an event for whose values no pose exists.
     fmi3UpdateDiscreteStates(
         discrete_states_need_update: *mut fmi3Boolean,
         terminate_simulation: *mut fmi3Boolean,
@@ -37,12 +37,14 @@ instance_calls! {
         }
         check_room("terminateSimulation", terminate_simulation)?;
         check_room("nextEventTime", next_event_time)?;
-        let must_end = instance.new_discrete_states()?;
+        let event = instance.new_discrete_states()?;
         for (_, flag) in flags {
             flag.write(false);
         }
+        nominals_of_continuous_states_changed.write(event.states_changed);
+        values_of_continuous_states_changed.write(event.states_changed);
         next_event_time.write_unaligned(0.0);
-        terminate_simulation.write(must_end);
+        terminate_simulation.write(event.must_end);
         Ok(())
     };
     /// `fmi3CompletedIntegratorStep`. Nothing is kept for going back, so that
@@ -55,9 +57,9 @@ instance_calls! {
         instance.allow(Call::CompletedIntegratorStep)?;
         check_room("enterEventMode", enter_event_mode)?;
         check_room("terminateSimulation", terminate_simulation)?;
-        let must_end = instance.completed_integrator_step()?;
-        enter_event_mode.write(false);
-        terminate_simulation.write(must_end);
+        let step = instance.completed_integrator_step()?;
+        enter_event_mode.write(step.has_event);
+        terminate_simulation.write(step.must_end);
         Ok(())
     };
     /// `fmi3GetNumberOfEventIndicators`: always 0.
