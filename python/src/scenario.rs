@@ -5,7 +5,7 @@ use std::sync::Arc;
 use biela::cli::{check_parameter, parameter_value, unknown_name};
 use biela::kinematics::{Pose, SolverChoices};
 use biela::mechanism::{
-    DriverId, DriverSource, Expression, Jet, Mechanism, Motion, ParameterId, Variable,
+    DriverId, DriverSource, Expression, Jet, Mechanism, Motion, Order, ParameterId, Variable,
 };
 use pyo3::prelude::*;
 
@@ -63,7 +63,17 @@ pub(crate) struct Scenario {
     pub(crate) loads: Vec<(usize, Vec<f64>)>,
 }
 
+/// Value or velocity of a freedom at the start \[SI\].
+pub(crate) type Start = (DriverId, Order, f64);
+
 impl Scenario {
+    /// Lets freedoms begin elsewhere, or with other velocities, than the file says.
+    pub(crate) fn set_starts(&mut self, starts: &[Start]) {
+        for &(freedom, order, value) in starts {
+            Arc::make_mut(&mut self.driven).set_start(freedom, order, value);
+        }
+    }
+
     /// Applies motions to a mechanism.
     ///
     /// # Errors
@@ -143,6 +153,37 @@ fn places(driven: &Mechanism, loads: Vec<(String, Vec<f64>)>) -> Vec<(usize, Vec
 fn expression(own: &Mechanism, text: &str) -> Result<Expression, Failure> {
     let parsed = own.parse_expression(text, Some(Variable::Time));
     parsed.map_err(|error| Failure::Usage(format!("drive: {}\n  {text}", error.message)))
+}
+
+/// Takes the starts of freedoms out of values that are set by name \[SI\].
+///
+/// # Errors
+///
+/// An expression is none, or its value is not finite.
+pub(crate) fn take_starts(
+    own: &Mechanism,
+    set: &mut Vec<(String, Value)>,
+) -> Result<Vec<Start>, Failure> {
+    let known = own.starts_of_freedoms();
+    let refuse = |name: &str, why: String| Failure::Usage(format!("parameters: `{name}`: {why}"));
+    let mut starts = Vec::new();
+    for (name, freedom, order) in known {
+        let Some(place) = set.iter().position(|(given, _)| *given == name) else {
+            continue;
+        };
+        let value = match set.remove(place).1 {
+            Value::Number(value) => value,
+            Value::Text(text) => own
+                .parse_expression(&text, None)
+                .map_err(|error| refuse(&name, error.message))?
+                .value(&own.default_parameters()),
+        };
+        if !value.is_finite() {
+            return Err(refuse(&name, format!("{value} is not finite")));
+        }
+        starts.push((freedom, order, value));
+    }
+    Ok(starts)
 }
 
 /// Returns all parameters in force for values of some \[SI\].

@@ -12,8 +12,8 @@ use super::signals::Signals;
 use crate::fmi;
 use crate::kinematics::{self, Solver};
 use crate::mechanism::{
-    DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Parameter, ParameterId, Unit,
-    Variable, help, large_angle, not_finite, quoted, shown,
+    DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Order, Parameter, ParameterId,
+    Unit, Variable, help, large_angle, not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
@@ -24,7 +24,8 @@ pub(super) struct Conditions {
     /// may be given several times.
     #[arg(short, long, value_name = "DRIVER=MOTION")]
     drive: Vec<String>,
-    /// Change a parameter for this run, such as 'crank_length=120*mm'; may be given for several.
+    /// Change a parameter for this run, such as 'crank_length=120*mm', or the start of a freedom, such
+    /// as 'swing.velocity=3'; may be given for several.
     #[arg(short, long, value_name = "PARAMETER=VALUE")]
     set: Vec<String>,
 }
@@ -82,6 +83,9 @@ impl Conditions {
             driven.drivers[index].source = DriverSource::Motion(motion);
             driven_by_option.push(DriverId(index));
         }
+        for (freedom, order, value) in self.starts(mechanism)? {
+            driven.set_start(freedom, order, value);
+        }
         let signals = match signals {
             Some(path) => Signals::read(path, &driven, &forces_by_option)?,
             None => Signals::default(),
@@ -133,13 +137,43 @@ impl Conditions {
         Ok(value)
     }
 
+    /// Splits each assignment of --set into the place among parameters and starts of freedoms, and the
+    /// expression.
+    fn settings(&self, mechanism: &Mechanism) -> Result<Vec<(usize, &str)>, Error> {
+        let starts = mechanism.starts_of_freedoms();
+        let names = mechanism.parameters.iter().map(|p| p.name.as_str());
+        let names = names.chain(starts.iter().map(|(name, ..)| name.as_str()));
+        SET.assignments(&self.set, &names.collect::<Vec<_>>())
+    }
+
+    /// Returns the starts of freedoms that are set \[SI\].
+    fn starts(&self, mechanism: &Mechanism) -> Result<Vec<(DriverId, Order, f64)>, Error> {
+        let starts = mechanism.starts_of_freedoms();
+        let settings = self.settings(mechanism)?;
+        let set = settings.into_iter().filter_map(|(index, text)| {
+            let (_, freedom, order) = starts.get(index.checked_sub(mechanism.parameters.len())?)?;
+            Some((*freedom, *order, text))
+        });
+        let value = |(freedom, order, text): (DriverId, Order, &str)| {
+            let kind = mechanism.drivers[freedom.index()].coordinate.kind;
+            let is_angle = kind.is_angle() && order == Order::Position;
+            Ok((
+                freedom,
+                order,
+                self.value(mechanism, SET.option, text, is_angle)?,
+            ))
+        };
+        set.map(value).collect()
+    }
+
     /// Returns the parameters in force \[SI\].
     fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
         let defaults = mechanism.default_parameters();
         let mut values = defaults.clone();
-        let names = mechanism.parameters.iter().map(|p| p.name.as_str());
-        for (index, text) in SET.assignments(&self.set, &names.collect::<Vec<_>>())? {
-            let parameter = &mechanism.parameters[index];
+        for (index, text) in self.settings(mechanism)? {
+            let Some(parameter) = mechanism.parameters.get(index) else {
+                continue;
+            };
             parameter
                 .check_settable()
                 .map_err(|error| Error::Usage(format!("--set: {error}")))?;

@@ -61,6 +61,16 @@ impl Motion {
         Ok(self)
     }
 
+    /// Describes the work and the error of the integration of freedoms, if there are some.
+    pub(super) fn describe_integration(&self) -> Option<String> {
+        let free = self.free.as_ref()?;
+        let steps = free.statistics().accepted;
+        let error = free.energy_error();
+        Some(format!(
+            "free motion: {steps} steps, error of the energy {error:.1e} J"
+        ))
+    }
+
     /// Solves forces too, from now on, and reactions where they are wanted.
     pub(super) fn with_forces(mut self, reactions: bool) -> Result<Self, Error> {
         self.solution.seek_forces(&self.solver);

@@ -166,7 +166,10 @@ impl Solver {
                 [_, Some(Motion::Expression(motion))] => {
                     Some(motion.evaluate(&|p: ParameterId| parameters[p.index()], time))
                 }
-                _ => value(DriverId(index)),
+                _ => value(DriverId(index)).or_else(|| {
+                    let starts = [own, driven].map(|mechanism| mechanism.drivers[index].start());
+                    starts[1].filter(|_| starts[0] != starts[1])
+                }),
             };
             if let Some(position) = given {
                 *curve = Curve::held(position, home.drivers[index]);

@@ -1,7 +1,7 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{DriverSource, MarkerId, Mechanism, Unit};
+use super::{DriverId, DriverSource, MarkerId, Mechanism, Order, Unit};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,33 @@ impl Coordinate {
 }
 
 impl Mechanism {
+    /// Returns value and velocity of each freedom at the start, which a run may set, by the names of
+    /// their variables.
+    #[must_use]
+    pub fn starts_of_freedoms(&self) -> Vec<(String, DriverId, Order)> {
+        let drivers = self.drivers.iter().enumerate();
+        let freedoms = drivers.filter(|(_, driver)| driver.is_free());
+        let starts = freedoms.flat_map(|(index, driver)| {
+            [("position", Order::Position), ("velocity", Order::Velocity)]
+                .map(|(rate, order)| (format!("{}.{rate}", driver.name), DriverId(index), order))
+        });
+        starts.collect()
+    }
+
+    /// Sets value or velocity of a freedom at the start \[SI\].
+    pub fn set_start(&mut self, freedom: DriverId, order: Order, to: f64) {
+        let source = &mut self.drivers[freedom.index()].source;
+        if let DriverSource::Free {
+            start, velocity, ..
+        } = source
+        {
+            match order {
+                Order::Position => *start = to,
+                Order::Velocity | Order::Acceleration => *velocity = to,
+            }
+        }
+    }
+
     /// Lets freedoms without a start begin at the values that the estimates give.
     pub(super) fn start_at_estimates(&mut self) {
         let parameters = self.default_parameters();

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -192,6 +193,21 @@ def test_threads_run_at_the_same_time(four_bar):
         ticks += 1
     thread.join()
     assert ticks >= 3
+
+
+def test_the_start_of_a_freedom_is_set(mechanism):
+    pendulum = mechanism("pendulum_free")
+    t = [0.0, 0.1, 0.5]
+    start = {"swing.position": "-30*deg", "swing.velocity": 2.5}
+    result = pendulum.run(t=t, parameters=start)
+    assert result["swing.position"][0] == np.radians(-30)
+    assert result["swing.velocity"][0] == 2.5
+    line = next(line for line in pendulum.text.splitlines() if line.startswith("swing ="))
+    edited = re.sub(r'start = .*', 'start = "-30*deg", velocity = 2.5 }', line)
+    same = biela.loads(pendulum.text.replace(line, edited)).run(t=t)
+    assert_array_equal(same["rod.phi"], result["rod.phi"])
+    with pytest.raises(biela.UsageError, match="`swing.velocity`: .*not finite"):
+        pendulum.run(t=t, parameters={"swing.velocity": np.nan})
 
 
 def test_a_wrapped_angle_is_on_the_turn_nearest_the_last_value():

@@ -12,7 +12,7 @@ use crate::cli::error::Error;
 use crate::cli::film::{Film, FilmFile};
 use crate::cli::input::Input;
 use crate::cli::input_files::InputFiles;
-use crate::cli::message::Message;
+use crate::cli::message::{Message, tell};
 use crate::cli::motion::Motion;
 use crate::cli::picture::{Format, extension};
 use crate::cli::plot::Plot;
@@ -167,6 +167,9 @@ impl Run {
         // Also after a dead point: the results up to there are written.
         let finished = recorders.into_iter().map(|r| r.finish(&motion));
         let failed: Vec<Error> = finished.filter_map(Result::err).collect();
+        if let Some(line) = motion.describe_integration() {
+            tell(line);
+        }
         let mut errors = outcome.err().into_iter().chain(failed);
         let Some(last) = errors.next_back() else {
             return Ok(());

@@ -25,6 +25,39 @@ fn answer(start: &str, arguments: &[&str]) -> String {
     stdout(&biela(&all).success())
 }
 
+/// As if the file had these starts. A run tells how well it has kept the energy.
+#[test]
+fn a_run_sets_the_start_of_a_freedom() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rod.toml");
+    let run = |text: &str, set: &[&str]| {
+        std::fs::write(&file, text).expect("it can be written");
+        let mut all = vec!["run", file.to_str().expect("UTF-8"), "-o", "-"];
+        all.extend(set);
+        biela(&all)
+    };
+    let text = ROD.replace("START", "20");
+    let set = [
+        "--set",
+        "swing.position=30*deg",
+        "--set",
+        "swing.velocity = -4",
+    ];
+    let set = run(&text, &set).success();
+    let edited = ROD.replace("\"START*deg\"", "\"30*deg\", velocity = -4");
+    let edited = run(&edited, &[]).success();
+    assert_eq!(stdout(&set), stdout(&edited));
+    let told = String::from_utf8_lossy(&set.get_output().stderr).into_owned();
+    assert!(told.contains("error of the energy"), "{told}");
+
+    let unknown = run(&text, &["--set", "swing.velocty=1"]).failure();
+    let told = String::from_utf8_lossy(&unknown.get_output().stderr).into_owned();
+    assert!(told.contains("`swing.velocity`"), "{told}");
+    let endless = run(&text, &["--set", "swing.velocity=1/0"]).failure();
+    let told = String::from_utf8_lossy(&endless.get_output().stderr).into_owned();
+    assert!(told.contains("not finite"), "{told}");
+}
+
 /// Also from the very top, where the rod is in balance but not stable.
 #[test]
 fn a_rod_comes_down_to_rest() {
