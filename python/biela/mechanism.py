@@ -194,7 +194,7 @@ class Mechanism:
 
         `variables` narrows the result to these variables, or to all of a body, marker, driver or
         measure. `gradient` names parameters by which the variables are differentiated, exactly, at
-        each time.
+        each time, and starts of freedoms such as `swing.velocity`, which `parameters` may set too.
 
         A motion that cannot go on raises `StoppedError`, or with `stop="keep"` returns a result
         with fewer rows and its `stopped`.

@@ -5,10 +5,11 @@ use std::sync::{Arc, OnceLock};
 
 use biela::cli;
 use biela::drawing::{Diagram, Followed, ForcePlace, svg};
-use biela::kinematics::Output;
-use biela::kinematics::{End, Mode, Path, Pose, RangeSettings, Solver, SolverChoices};
+use biela::kinematics::{
+    Direction, End, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices,
+};
 use biela::mechanism::{
-    Diagnostic, DriverId, Mechanism as Model, Parameter, ParameterId, Source, Unit,
+    Diagnostic, DriverId, Mechanism as Model, Order, Parameter, ParameterId, Source, Unit,
 };
 use biela::page::{Place, edit};
 use numpy::{IntoPyArray, PyArray1};
@@ -20,7 +21,7 @@ use crate::fit::Targets;
 use crate::follower::{Fit, Target};
 use crate::run::{Run, run};
 use crate::runner::Runner;
-use crate::scenario::{Drive, Home, Scenario, Value, parameter, parameters};
+use crate::scenario::{Drive, Home, Scenario, Value, parameter, parameters, take_starts};
 use crate::sweep::{Sweep, sweep};
 use crate::timing::FreeDriver;
 
@@ -256,10 +257,12 @@ impl Mechanism {
         by: Vec<String>,
     ) -> Result<Run, Failure> {
         py.detach(|| {
-            let scenario = self.scenario(motions)?;
+            let mut scenario = self.scenario(motions)?;
+            let mut parameters = parameters;
+            scenario.set_starts(&take_starts(&self.model, &mut parameters)?);
             let parameters = self.in_force(parameters)?;
-            let by = by.iter().map(|name| self.free(name));
-            let by: Vec<ParameterId> = by.collect::<Result<_, _>>()?;
+            let by = by.iter().map(|name| self.direction(name));
+            let by: Vec<_> = by.collect::<Result<_, _>>()?;
             let told = self.all_columns().iter().filter(|column| column.is_told());
             let told = told.cloned().collect();
             run(&scenario, &parameters, &self.chosen(&columns), &by, told)
@@ -316,10 +319,26 @@ impl Mechanism {
                     unknowns: 0..0,
                 })
             });
-            let targets = targets.collect::<Result<_, Failure>>()?;
+            let targets = targets.collect::<Result<Vec<_>, Failure>>()?;
+            let scenario = self.scenario(motions)?;
+            let timed = |id| {
+                let drivers = targets
+                    .iter()
+                    .filter_map(|target| target.free_driver.as_ref());
+                drivers.map(|free| free.driver).any(|driver| driver == id)
+            };
+            let mut drivers = scenario.driven.drivers.iter().enumerate();
+            let moves_freely =
+                drivers.find(|(index, driver)| driver.is_free() && !timed(DriverId(*index)));
+            if let Some((_, freedom)) = moves_freely {
+                return Err(Failure::Usage(format!(
+                    "drive: a fit needs to know how freedom `{}` moves",
+                    freedom.name
+                )));
+            }
             let free = free.iter().map(|name| self.free(name));
             Ok(Targets::new(Fit::new(
-                self.scenario(motions)?,
+                scenario,
                 targets,
                 free.collect::<Result<_, _>>()?,
                 turns.map(|name| self.driver_named(&name)).transpose()?,
@@ -572,6 +591,21 @@ impl Mechanism {
             Place::Whole,
         )
         .map_err(|error| Failure::File(error.to_string()))
+    }
+
+    /// Returns the direction in which a parameter grows, or the start of a freedom.
+    fn direction(&self, name: &str) -> Result<Direction, Failure> {
+        let mut starts = self.model.starts_of_freedoms().into_iter();
+        let Some((_, freedom, order)) = starts.find(|(start, ..)| start == name) else {
+            return Ok(Direction::by_parameter(&self.model, self.free(name)?));
+        };
+        let mut direction = Direction::zero(&self.model);
+        let change = &mut direction.drivers[freedom.index()];
+        match order {
+            Order::Position => change.value = 1.0,
+            _ => change.derivatives[0] = 1.0,
+        }
+        Ok(direction)
     }
 
     /// Returns a parameter that does not follow from others.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use biela::drawing::ForcePlace;
 use biela::kinematics::{Direction, Output};
-use biela::mechanism::{Driver, Mechanism, ParameterId};
+use biela::mechanism::Mechanism;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -19,7 +19,7 @@ pub(crate) struct Run {
     mechanism: Arc<Mechanism>,
     /// Values by row, then by column.
     values: Vec<f64>,
-    /// Derivatives by row, then by parameter, then by column.
+    /// Derivatives by row, then by direction, then by column.
     gradient: Vec<f64>,
     film: Film,
     /// Number of rows that were reached.
@@ -40,7 +40,7 @@ impl Run {
         self.values.clone().into_pyarray(py)
     }
 
-    /// Returns the derivatives, by row, then by parameter, then by column.
+    /// Returns the derivatives, by row, then by direction, then by column.
     fn gradient<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.gradient.clone().into_pyarray(py)
     }
@@ -57,7 +57,7 @@ impl Run {
     }
 }
 
-/// Runs a mechanism; records the columns, and their derivatives by the parameters. The film tells
+/// Runs a mechanism; records the columns, and their derivatives along the directions. The film tells
 /// the columns `told`.
 ///
 /// # Errors
@@ -67,14 +67,10 @@ pub(crate) fn run(
     scenario: &Scenario,
     parameters: &[f64],
     columns: &[Output],
-    by: &[ParameterId],
+    by: &[Direction],
     told: Vec<Output>,
 ) -> Result<Run, Failure> {
-    if !by.is_empty() && scenario.driven.drivers.iter().any(Driver::is_free) {
-        let why = "gradient: free motion has none yet; drive the freedoms, or take differences";
-        return Err(Failure::Usage(why.to_owned()));
-    }
-    let mut runner = Runner::new(scenario, columns)?;
+    let mut runner = Runner::along(scenario, columns, by)?;
     let rows = scenario.times.len();
     runner.start(parameters)?;
     let arrows = ForcePlace::sought(&mut runner.solver, &runner.solution);
@@ -87,10 +83,6 @@ pub(crate) fn run(
         stop: None,
         notices: Vec::new(),
     };
-    let directions: Vec<_> = by
-        .iter()
-        .map(|p| Direction::by_parameter(&scenario.own, *p))
-        .collect();
     for row in 0..rows {
         if row > 0 {
             if let Err(stop) = runner.advance(row) {
@@ -102,7 +94,10 @@ pub(crate) fn run(
         result.notices.extend(runner.lift_offs());
         let values = columns.iter().map(|column| runner.value(column));
         result.values.extend(values);
-        runner.differentiate(columns, &directions, &mut result.gradient)?;
+        if !by.is_empty() {
+            let directions = runner.directions(by)?;
+            runner.differentiate(columns, &directions, &mut result.gradient)?;
+        }
         result.film.add(row, &runner);
         result.rows += 1;
     }

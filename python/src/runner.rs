@@ -36,6 +36,15 @@ pub(crate) struct Runner {
 impl Runner {
     /// Makes a runner; with a column of forces it solves them too.
     pub(crate) fn new(scenario: &Scenario, columns: &[Output]) -> Result<Self, Failure> {
+        Self::along(scenario, columns, &[])
+    }
+
+    /// Makes a runner whose free motion is followed with its changes along directions.
+    pub(crate) fn along(
+        scenario: &Scenario,
+        columns: &[Output],
+        directions: &[Direction],
+    ) -> Result<Self, Failure> {
         let home = Solver::new(scenario.own.clone())?;
         let solver = Solver::new(scenario.driven.clone())?;
         let mut solution = Solution::new(&solver);
@@ -43,7 +52,7 @@ impl Runner {
             solution.seek_forces(&solver);
         }
         let tolerance = solver.mechanism().simulation.tolerance;
-        let free = FreeMotion::new(&solver, tolerance).map_err(stopped)?;
+        let free = FreeMotion::along(&solver, tolerance, directions.to_vec()).map_err(stopped)?;
         Ok(Self {
             free: free.map(|free| {
                 let state = free.state();
@@ -302,6 +311,19 @@ impl Runner {
     /// Returns the value of a column \[SI\].
     pub(crate) fn value(&self, column: &Output) -> f64 {
         self.solution.value(&self.solver, column)
+    }
+
+    /// Returns the directions at the pose: those of a free motion have changed with it.
+    ///
+    /// # Errors
+    ///
+    /// They do not exist, as at a singular position.
+    pub(crate) fn directions(&mut self, own: &[Direction]) -> Result<Vec<Direction>, Failure> {
+        let Some((free, _)) = &mut self.free else {
+            return Ok(own.to_vec());
+        };
+        free.varied(&mut self.solver, &mut self.solution)
+            .map_err(stopped)
     }
 
     /// Adds the derivatives of columns along directions, by direction, then by column.

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use super::error::Error;
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::{
     End, EquationsOfMotion, Forces, Path, RangeSettings, Rates, Solution, Solver,
@@ -147,15 +148,14 @@ impl Charts {
         &self.current
     }
 
-    /// Returns the natural size of each component of x, for a mechanism of this size \[m\]: a radian or
-    /// the size for values, the same per second for velocities. The work is left out of error control.
-    pub(super) fn scales(&self, size: f64) -> Vec<f64> {
+    /// Returns the natural size of the first components of x, for a mechanism of this size \[m\]: a
+    /// radian or the size for values, the same per second for velocities. The others, work and
+    /// derivatives, are left out of error control.
+    pub(super) fn scales(&self, size: f64, components: usize) -> Vec<f64> {
         let values = self.current.iter().map(|k| self.candidates[*k].scale(size));
-        values
-            .clone()
-            .chain(values)
-            .chain([f64::INFINITY])
-            .collect()
+        let scales = values.clone().chain(values);
+        let scales = scales.chain(std::iter::repeat(f64::INFINITY));
+        scales.take(components).collect()
     }
 
     /// Returns coordinates in which the motion goes on better than in those in use, at the pose of
@@ -233,7 +233,8 @@ impl Charts {
         solution: &mut Solution,
         coordinates: Vec<usize>,
         x: &mut [f64],
-    ) -> bool {
+    ) -> Result<bool, Error> {
+        let changes = self.changes(solver, equations, &coordinates, x)?;
         let rates = equations.motion().coasting();
         let count = coordinates.len();
         let mut pose = solver.pose().clone();
@@ -246,10 +247,35 @@ impl Charts {
         }
         if !self.select(solver, &mut equations.forces, solution, &coordinates) {
             self.unfit.push(coordinates);
-            return false;
+            return Ok(false);
         }
+        x[2 * count + 1..].copy_from_slice(&changes);
         solver.restore(&pose);
-        true
+        Ok(true)
+    }
+
+    /// Returns the changes of values and velocities of some candidates along the directions of the
+    /// motion.
+    fn changes(
+        &self,
+        solver: &mut Solver,
+        equations: &mut Equations,
+        coordinates: &[usize],
+        x: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        let mut changes = Vec::with_capacity(equations.variations());
+        if equations.directions.is_empty() {
+            return Ok(changes);
+        }
+        let mut rates = Rates::new(solver.pose().q.len());
+        for direction in equations.varied(solver, x, &mut rates)? {
+            let sensitivity = solver.sensitivity(&rates, &equations.point.drivers, &direction)?;
+            let relations = coordinates.iter().map(|k| &*self.candidates[*k].relation);
+            let along: Vec<_> = relations.map(|r| sensitivity.coordinate(r)).collect();
+            changes.extend(along.iter().map(|change| change.value));
+            changes.extend(along.iter().map(|change| change.first()));
+        }
+        Ok(changes)
     }
 
     /// Compiles the mechanism with other coordinates as its freedoms, which start at the solver's

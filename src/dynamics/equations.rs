@@ -21,6 +21,8 @@ const NO_INERTIA: f64 = 1e-13;
 pub(super) struct Equations {
     /// The freedoms among the drivers, ascending.
     pub(super) freedoms: Vec<DriverId>,
+    /// Directions along which the motion is differentiated, with the changes of freedoms at the start.
+    pub(super) directions: Vec<Direction>,
     pub(super) forces: Forces,
     motion: EquationsOfMotion,
     /// From the solver's pose straight to the values at a trial point.
@@ -29,7 +31,7 @@ pub(super) struct Equations {
     factor: DMatrix<f64>,
     accelerations: Vec<f64>,
     /// The trial point at which the equations are.
-    point: Point,
+    pub(super) point: Point,
     /// The last point accepted, with the solver's pose and choices there.
     pub(super) accepted: Point,
     pose: Pose,
@@ -70,7 +72,7 @@ impl Point {
 
 impl Equations {
     /// Makes the storage for a solver's mechanism; its pose is accepted.
-    pub(super) fn new(solver: &Solver) -> Self {
+    pub(super) fn new(solver: &Solver, directions: Vec<Direction>) -> Self {
         let drivers = solver.mechanism().drivers.iter().enumerate();
         let freedoms = drivers.filter(|(_, driver)| driver.is_free());
         let freedoms: Vec<_> = freedoms.map(|(index, _)| DriverId(index)).collect();
@@ -84,6 +86,7 @@ impl Equations {
         };
         let mut equations = Self {
             freedoms,
+            directions,
             motion: solver.equations_of_motion(),
             path: Path::new(solver.mechanism()),
             forces,
@@ -472,7 +475,9 @@ impl<G: Given> System for Trials<'_, G> {
         } = self;
         equations.set_drivers(solver, *given, t, x);
         equations.go(solver, t, None).map_err(Failure::Trial)?;
-        equations.write(solver, dx).map_err(|error| match error {
+        let written = equations.write(solver, dx);
+        let written = written.and_then(|()| equations.vary(solver, x, dx));
+        written.map_err(|error| match error {
             // No shorter step finds a mass.
             Error::NoInertia { .. } => Failure::Hard(error),
             _ => Failure::Trial(error),

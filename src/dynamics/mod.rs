@@ -14,6 +14,7 @@
 //! | `state` | [`FreeState`]: all numbers on which a motion depends |
 //! | `charts` | the coordinates in which the freedoms are integrated |
 //! | `equations` | the right-hand side |
+//! | `variations` | the changes of a motion along directions |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
 //! | `linear` | its linearisation at a pose; static equilibrium |
 
@@ -25,6 +26,7 @@ pub mod integrator;
 mod linear;
 mod motion;
 mod state;
+mod variations;
 
 pub use charts::keeps_coordinates;
 pub use error::Error;

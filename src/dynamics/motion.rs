@@ -38,20 +38,39 @@ impl FreeMotion {
     ///
     /// [`Error::Integrator`] for a tolerance that is none.
     pub fn new(solver: &Solver, tolerance: f64) -> Result<Option<Self>, Error> {
-        let equations = Equations::new(solver);
+        Self::along(solver, tolerance, Vec::new())
+    }
+
+    /// Makes the motion with its derivatives along directions, in which the changes of freedoms are
+    /// those at the start. It is integrated by the explicit method then.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn along(
+        solver: &Solver,
+        tolerance: f64,
+        directions: Vec<Direction>,
+    ) -> Result<Option<Self>, Error> {
+        let method = match directions.is_empty() {
+            true => Method::Automatic,
+            false => Method::Explicit,
+        };
+        let equations = Equations::new(solver, directions);
         if equations.freedoms.is_empty() {
             return Ok(None);
         }
         let count = equations.freedoms.len();
-        let mut x = vec![0.0; 2 * count + 1];
+        let mut x = vec![0.0; 2 * count + 1 + equations.variations()];
         write_start(&equations.freedoms, solver.pose(), &mut x);
         let (charts, size) = (
             Charts::new(solver.mechanism(), &equations.freedoms),
             solver.size(),
         );
-        let control = ErrorControl::new(tolerance, charts.scales(size)).map_err(unusable)?;
+        let control = ErrorControl::new(tolerance, charts.scales(size, x.len()));
+        let control = control.map_err(unusable)?;
         let start = solver.pose().time;
-        let integrator = Integrator::new(Method::Automatic, control, start, x.clone());
+        let integrator = Integrator::new(method, control, start, x.clone());
         let integrator = integrator.map_err(unusable)?;
         Ok(Some(Self {
             tolerance,
@@ -99,7 +118,7 @@ impl FreeMotion {
 
     /// Controls errors with a tolerance in the coordinates in use.
     fn set_control(&mut self, tolerance: f64) -> Result<(), Error> {
-        let control = ErrorControl::new(tolerance, self.charts.scales(self.size));
+        let control = ErrorControl::new(tolerance, self.charts.scales(self.size, self.x.len()));
         control
             .and_then(|control| self.integrator.set_control(control))
             .map_err(unusable)
@@ -107,9 +126,7 @@ impl FreeMotion {
 
     /// Returns the natural size of each freedom's value.
     pub(super) fn scales(&self) -> Vec<f64> {
-        let mut scales = self.charts.scales(self.size);
-        scales.truncate(self.freedoms().len());
-        scales
+        self.charts.scales(self.size, self.freedoms().len())
     }
 
     /// Returns J of the freedoms at the last point at which accelerations were solved.
@@ -239,6 +256,23 @@ impl FreeMotion {
         self.equations.complete(solver, rates, direction, loads)
     }
 
+    /// Returns the changes of the motion along its directions at the pose and for the rates and loads of
+    /// a solution, which belong to the accepted point.
+    ///
+    /// # Errors
+    ///
+    /// They do not exist there.
+    pub fn varied(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+    ) -> Result<Vec<Direction>, Error> {
+        self.solve_accelerations(solver, &mut solution.driver_rates, &solution.loads)?;
+        let mut rates = Rates::new(solver.pose().q.len());
+        let x = &self.integrator.state().x;
+        self.equations.varied(solver, x, &mut rates)
+    }
+
     /// Begins at the solver's pose, with the velocities of the file.
     ///
     /// # Errors
@@ -266,6 +300,7 @@ impl FreeMotion {
         for (x, freedom) in velocities.zip(&self.equations.freedoms) {
             *x = velocity(*freedom);
         }
+        self.equations.write_variations(&mut self.x);
         self.renew(solver, given)
     }
 
@@ -365,7 +400,7 @@ impl FreeMotion {
             ..
         } = self;
         x.copy_from_slice(&integrator.state().x);
-        if !charts.exchange(solver, equations, solution, coordinates, x) {
+        if !charts.exchange(solver, equations, solution, coordinates, x)? {
             return Ok(false);
         }
         self.set_control(self.tolerance)?;

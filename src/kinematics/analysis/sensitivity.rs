@@ -78,11 +78,12 @@ impl Sensitivity<'_> {
     /// Returns the changes of a signal's value, velocity and acceleration.
     #[must_use]
     pub fn signal(&self, signal: Signal) -> Jet {
-        let varied = self.varied(signal);
-        Jet::new(
-            varied.value.first(),
-            varied.derivatives.map(|derivative| derivative.first()),
-        )
+        change_of(self.varied(signal))
+    }
+
+    /// Returns the changes of a coordinate's value, velocity and acceleration.
+    pub(crate) fn coordinate(&self, relation: &dyn Constraint) -> Jet {
+        change_of(relation.along(&self.mechanism()))
     }
 
     /// Returns the mechanism along the direction.
@@ -216,6 +217,12 @@ impl Sensitivity<'_> {
             },
         }
     }
+}
+
+/// Returns the change of a number and of its derivatives along the direction.
+fn change_of(number: Varied) -> Jet {
+    let changes = number.derivatives.map(|derivative| derivative.first());
+    Jet::new(number.value.first(), changes)
 }
 
 /// Returns whether a number and its derivatives have finite changes along the direction.
