@@ -1,6 +1,6 @@
 //! The right-hand side: accelerations of freedoms at a trial point.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::error::Error;
 use super::given::Given;
@@ -12,8 +12,8 @@ use crate::kinematics::{
 };
 use crate::mechanism::{DriverId, Jet, Mechanism};
 
-/// A freedom feels no inertia if its pivot in J is below this part of its diagonal entry: some
-/// hundred roundings of the sum over bodies.
+/// A freedom feels no inertia of its own if this part of √M ∂q/∂u is left of it where those of others
+/// are taken out: some hundred roundings.
 const NO_INERTIA: f64 = 1e-13;
 
 /// The equations of a mechanism, and the accepted pose from which trials set out.
@@ -27,7 +27,12 @@ pub(super) struct Equations {
     motion: EquationsOfMotion,
     /// From the solver's pose straight to the values at a trial point.
     path: Path,
-    /// J of the freedoms, and its Cholesky factor below the diagonal.
+    /// √M ∂q/∂u of the freedoms, orthonormal after a solution.
+    columns: DMatrix<f64>,
+    /// √M q̈ where no freedom accelerates, and its parts along the columns.
+    rest: DVector<f64>,
+    along: Vec<f64>,
+    /// L of J = L Lᵀ.
     factor: DMatrix<f64>,
     accelerations: Vec<f64>,
     /// The trial point at which the equations are.
@@ -77,7 +82,7 @@ impl Equations {
         let freedoms = drivers.filter(|(_, driver)| driver.is_free());
         let freedoms: Vec<_> = freedoms.map(|(index, _)| DriverId(index)).collect();
         let forces = solver.forces();
-        let count = freedoms.len();
+        let (count, unknowns) = (freedoms.len(), solver.pose().q.len());
         let drivers = solver.pose().drivers.iter();
         let point = Point {
             drivers: drivers.map(|value| Jet::constant(*value)).collect(),
@@ -90,6 +95,9 @@ impl Equations {
             motion: solver.equations_of_motion(),
             path: Path::new(solver.mechanism()),
             forces,
+            columns: DMatrix::zeros(unknowns, count),
+            rest: DVector::zeros(unknowns),
+            along: vec![0.0; count],
             factor: DMatrix::zeros(count, count),
             accelerations: vec![0.0; count],
             accepted: point.clone(),
@@ -159,7 +167,8 @@ impl Equations {
         for (change, freedom) in self.accelerations.iter_mut().zip(&self.freedoms) {
             *change = -changes.change(ForceQuantity::Effort(*freedom))?;
         }
-        substitute(&self.factor, &mut self.accelerations);
+        self.descend();
+        self.ascend();
         for (change, freedom) in self.accelerations.iter().zip(&self.freedoms) {
             direction.drivers[freedom.index()].derivatives[1] = *change;
         }
@@ -379,54 +388,95 @@ impl Equations {
         Ok(())
     }
 
-    /// Solves J ü = −bias for the freedoms.
+    /// Solves J ü = −bias for the freedoms, by least squares on √M ∂q/∂u: where J is badly conditioned,
+    /// as with bodies of very different masses, half of its digits are saved.
     fn solve_accelerations(&mut self, solver: &Solver) -> Result<(), Error> {
-        let definitions = &solver.mechanism().drivers;
-        let (inertia, drivers) = (&self.motion.inertia, &self.point.drivers);
-        for (row, freedom) in self.freedoms.iter().enumerate() {
-            let freedom = freedom.index();
-            let known = drivers.iter().zip(definitions).enumerate();
-            let known = known.filter(|(_, (_, definition))| !definition.is_free());
-            let inertial =
-                known.map(|(other, (rates, _))| inertia[(freedom, other)] * rates.second());
-            self.accelerations[row] = -(self.motion.bias[freedom] + inertial.sum::<f64>());
-            for (column, other) in self.freedoms[..=row].iter().enumerate() {
-                self.factor[(row, column)] = inertia[(freedom, other.index())];
+        let Self {
+            motion,
+            freedoms,
+            point,
+            columns,
+            rest,
+            accelerations,
+            ..
+        } = self;
+        for (place, freedom) in freedoms.iter().enumerate() {
+            columns.set_column(place, &motion.weighted.column(freedom.index()));
+            accelerations[place] = motion.applied[freedom.index()];
+        }
+        rest.copy_from_slice(&motion.weighted_rest);
+        let definitions = solver.mechanism().drivers.iter();
+        for (index, (driver, rates)) in definitions.zip(&point.drivers).enumerate() {
+            if !driver.is_free() {
+                rest.axpy(rates.second(), &motion.weighted.column(index), 1.0);
             }
         }
         self.factorise(solver)?;
-        substitute(&self.factor, &mut self.accelerations);
+        self.descend();
+        for (place, acceleration) in self.accelerations.iter_mut().enumerate() {
+            *acceleration = -self.along[place] - *acceleration;
+        }
+        self.ascend();
         for (freedom, acceleration) in self.freedoms.iter().zip(&self.accelerations) {
             self.point.drivers[freedom.index()].derivatives[1] = *acceleration;
         }
         Ok(())
     }
 
-    /// Factorises J by Cholesky's method, in place.
+    /// Makes the columns orthonormal by the modified method of Gram and Schmidt, and takes their parts
+    /// out of the rest: J = L Lᵀ.
     ///
     /// # Errors
     ///
     /// [`Error::NoInertia`] for freedoms that move no mass.
     fn factorise(&mut self, solver: &Solver) -> Result<(), Error> {
-        let factor = &mut self.factor;
-        for row in 0..factor.nrows() {
-            for column in 0..row {
-                let sum: f64 = (0..column)
-                    .map(|k| factor[(row, k)] * factor[(column, k)])
-                    .sum();
-                factor[(row, column)] = (factor[(row, column)] - sum) / factor[(column, column)];
-            }
-            let own = factor[(row, row)];
-            let pivot = own - (0..row).map(|k| factor[(row, k)].powi(2)).sum::<f64>();
-            if pivot.is_nan() || pivot <= NO_INERTIA * own {
-                let freedom = self.freedoms[row].index();
+        let Self {
+            columns,
+            factor,
+            rest,
+            along,
+            ..
+        } = self;
+        for place in 0..columns.ncols() {
+            // The norm of the column before others were taken out of it.
+            let before = (0..place).fold(0.0, |sum: f64, k| sum.hypot(factor[(place, k)]));
+            let norm = columns.column(place).norm();
+            if norm.is_nan() || norm <= NO_INERTIA * norm.hypot(before) {
+                let freedom = self.freedoms[place].index();
                 let name = &solver.mechanism().drivers[freedom].name;
                 let freedoms = vec![format!("freedom `{name}`")];
                 return Err(Error::NoInertia { freedoms });
             }
-            factor[(row, row)] = pivot.sqrt();
+            factor[(place, place)] = norm;
+            let (mut done, mut others) = columns.columns_range_pair_mut(place, place + 1..);
+            done /= norm;
+            for (k, mut other) in others.column_iter_mut().enumerate() {
+                let part = done.dot(&other);
+                factor[(place + 1 + k, place)] = part;
+                other.axpy(-part, &done, 1.0);
+            }
+            along[place] = done.dot(rest);
+            rest.axpy(-along[place], &done, 1.0);
         }
         Ok(())
+    }
+
+    /// Solves L y = x for the accelerations x, in place.
+    fn descend(&mut self) {
+        let (factor, x) = (&self.factor, &mut self.accelerations);
+        for row in 0..x.len() {
+            let sum: f64 = (0..row).map(|k| factor[(row, k)] * x[k]).sum();
+            x[row] = (x[row] - sum) / factor[(row, row)];
+        }
+    }
+
+    /// Solves Lᵀ x = y for the accelerations, in place.
+    fn ascend(&mut self) {
+        let (factor, x) = (&self.factor, &mut self.accelerations);
+        for row in (0..x.len()).rev() {
+            let sum: f64 = (row + 1..x.len()).map(|k| factor[(k, row)] * x[k]).sum();
+            x[row] = (x[row] - sum) / factor[(row, row)];
+        }
     }
 
     /// Returns the power of the applied forces and of the drivers \[W\].
@@ -441,19 +491,6 @@ impl Equations {
             effort * self.point.drivers[row].first()
         });
         self.motion.applied_power + powers.sum::<f64>()
-    }
-}
-
-/// Solves L Lᵀ x = b for the factor L below the diagonal; b stands in x.
-fn substitute(factor: &DMatrix<f64>, x: &mut [f64]) {
-    let count = x.len();
-    for row in 0..count {
-        let sum: f64 = (0..row).map(|k| factor[(row, k)] * x[k]).sum();
-        x[row] = (x[row] - sum) / factor[(row, row)];
-    }
-    for row in (0..count).rev() {
-        let sum: f64 = (row + 1..count).map(|k| factor[(k, row)] * x[k]).sum();
-        x[row] = (x[row] - sum) / factor[(row, row)];
     }
 }
 

@@ -8,7 +8,7 @@
 
 use nalgebra::DMatrix;
 
-use super::inertial::{Masses, add, by_body, power};
+use super::inertial::{Masses, by_body, power};
 use super::solve::{Forces, solve_rates};
 use crate::kinematics::error::Error;
 use crate::kinematics::path::Rates;
@@ -23,6 +23,13 @@ pub struct EquationsOfMotion {
     pub inertia: DMatrix<f64>,
     /// Effort of each driver where none accelerates \[N or N m\].
     pub bias: Vec<f64>,
+    /// √M ∂q/∂u, a column per driver: J is the product of its transpose with itself.
+    pub weighted: DMatrix<f64>,
+    /// √M q̈ where no driver accelerates, with gravity; bias is its product with the columns and the
+    /// efforts against the applied forces.
+    pub weighted_rest: Vec<f64>,
+    /// Effort of each driver against all applied forces but gravity \[N or N m\].
+    pub applied: Vec<f64>,
     /// Power of all applied forces but gravity \[W\].
     pub applied_power: f64,
     /// Energy of the bodies without that of springs: kinetic, and potential of gravity \[J\].
@@ -41,6 +48,9 @@ impl EquationsOfMotion {
         Self {
             inertia: DMatrix::zeros(drivers, drivers),
             bias: vec![0.0; drivers],
+            weighted: DMatrix::zeros(unknowns, drivers),
+            weighted_rest: vec![0.0; unknowns],
+            applied: vec![0.0; drivers],
             applied_power: 0.0,
             energy: 0.0,
             coasting: Rates::new(unknowns),
@@ -79,6 +89,7 @@ impl EquationsOfMotion {
     fn add_bodies(&mut self, masses: &mut Masses<f64>, exerted: &[f64], state: &State) {
         self.inertia.fill(0.0);
         self.bias.fill(0.0);
+        self.applied.fill(0.0);
         self.applied_power = 0.0;
         let mut energies = [0.0; 2];
         let gravity = masses.gravity;
@@ -91,14 +102,20 @@ impl EquationsOfMotion {
             energies = [energies[0] + own[0], energies[1] + own[1]];
             let exerted = by_body(exerted)[k];
             self.applied_power -= power(velocities[k], exerted);
-            let mut demand = body.demand(velocities[k][2], accelerations[k], gravity);
-            add(&mut demand, exerted);
+            let rest = body.weighted(body.felt(velocities[k][2], accelerations[k], gravity));
+            self.weighted_rest[3 * k..3 * k + 3].copy_from_slice(&rest);
             for (i, unit) in self.units.iter().enumerate() {
                 let unit = by_body(unit.velocity())[k];
-                self.bias[i] += power(unit, demand);
-                let momentum = body.momentum(unit);
-                for (j, other) in self.units[..=i].iter().enumerate() {
-                    let product = power(by_body(other.velocity())[k], momentum);
+                let weighted = body.weighted(unit);
+                let effort = power(unit, exerted);
+                self.applied[i] += effort;
+                self.bias[i] += power(weighted, rest) + effort;
+                for (row, entry) in weighted.into_iter().enumerate() {
+                    self.weighted[(3 * k + row, i)] = entry;
+                }
+                for j in 0..=i {
+                    let other = self.weighted.fixed_view::<3, 1>(3 * k, j);
+                    let product = power(weighted, [other[0], other[1], other[2]]);
                     self.inertia[(i, j)] += product;
                     if j < i {
                         self.inertia[(j, i)] += product;

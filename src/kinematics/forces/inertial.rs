@@ -195,10 +195,16 @@ impl<N: Number> MassProperties<N> {
     /// the force is m (a − g) with a = r̈ + alpha perp(s) − omega² s, the torque
     /// J alpha + s × m (a − g).
     #[inline]
-    pub(super) fn demand(&self, omega: N, [ax, ay, alpha]: [N; 3], [gx, gy]: [N; 2]) -> [N; 3] {
+    pub(super) fn demand(&self, omega: N, acceleration: [N; 3], gravity: [N; 2]) -> [N; 3] {
+        self.momentum(self.felt(omega, acceleration, gravity))
+    }
+
+    /// Returns q̈ without the acceleration of gravity, and with the centre's centripetal one.
+    #[inline]
+    pub(super) fn felt(&self, omega: N, [ax, ay, alpha]: [N; 3], [gx, gy]: [N; 2]) -> [N; 3] {
         let [x, y] = self.arm;
         let square = omega * omega;
-        self.momentum([ax - gx - square * x, ay - gy - square * y, alpha])
+        [ax - gx - square * x, ay - gy - square * y, alpha]
     }
 
     /// Returns the kinetic energy, and the potential energy of gravity, zero at ground's origin.
@@ -211,6 +217,21 @@ impl<N: Number> MassProperties<N> {
         [
             product * 0.5,
             -(self.mass * (gx * (px + x) + gy * (py + y))),
+        ]
+    }
+}
+
+impl MassProperties<f64> {
+    /// Returns √M v, for the root of M that belongs to the centre of mass: the product of two of them is
+    /// that of one with the momentum of the other.
+    #[inline]
+    pub(super) fn weighted(&self, [vx, vy, omega]: [f64; 3]) -> [f64; 3] {
+        let [x, y] = self.arm;
+        let mass = self.mass.sqrt();
+        [
+            mass * (vx - omega * y),
+            mass * (vy + omega * x),
+            self.inertia.sqrt() * omega,
         ]
     }
 }

@@ -186,8 +186,7 @@ fn light(z: &[Taylor], _: Taylor) -> Vec<Mass> {
 
 /// The light cart: at the lowest position the pole turns at 4,429 rad/s for less than a
 /// microsecond. The motion is right or ends with an error. The mass matrix has the condition 1e6
-/// there: at the tightest tolerance rounding decides, 1e-16 · 1e6 of the energy in each of some
-/// hundred steps through each of eleven passes, and the error of the time of a pass with it.
+/// there, of which a solution by √M ∂q/∂u sees the root.
 #[test]
 fn a_pole_on_a_light_cart_is_right_or_refused() {
     let text = "format = 1\nname = \"light\"\n[ground.markers]\nO = [0, 0]\n\
@@ -205,7 +204,7 @@ fn a_pole_on_a_light_cart_is_right_or_refused() {
     };
     let times = times(10.0, 40);
     let exact = truth.motion(&[0.0, 0.0], &times);
-    for (tolerance, mark) in [(1e-10, 2e-7), (1e-8, 1e-6), (1e-6, 1e-4)] {
+    for (tolerance, mark) in [(1e-10, 1e-8), (1e-8, 1e-6), (1e-6, 1e-4)] {
         let begin = Instant::now();
         let mut run = Run::new(&parse(text), tolerance, Fed::default());
         let mut largest = 0.0_f64;
