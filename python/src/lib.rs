@@ -9,7 +9,7 @@
 //! | `sweep` | the same motion of many variants, on all cores |
 //! | `timing`, `follower` | drivers whose values are free; a mechanism that follows targets |
 //! | `fit`, `attempt` | targets: costs of many variants; unknowns that a fit improves |
-//! | `mechanism` | the class `Mechanism` |
+//! | `mechanism`, `rows` | the class `Mechanism`; what it returns as tuples |
 //!
 //! Shapes, units and names of Python are the package's business; here arrays are flat.
 
@@ -19,6 +19,7 @@ mod film;
 mod fit;
 mod follower;
 mod mechanism;
+mod rows;
 mod run;
 mod runner;
 mod scenario;

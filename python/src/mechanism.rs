@@ -6,78 +6,24 @@ use std::sync::{Arc, OnceLock};
 use biela::cli;
 use biela::drawing::{Diagram, Followed, ForcePlace, svg};
 use biela::kinematics::{
-    Direction, End, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices,
+    Direction, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices,
 };
-use biela::mechanism::{
-    Diagnostic, DriverId, Mechanism as Model, Order, Parameter, ParameterId, Source, Unit,
-};
+use biela::mechanism::{Diagnostic, DriverId, Mechanism as Model, Order, ParameterId, Source};
 use biela::page::{Place, edit};
-use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
 use crate::attempt::Attempt;
 use crate::error::{Failure, exception};
 use crate::fit::Targets;
 use crate::follower::{Fit, Target};
+use crate::rows::{
+    DriverRow, ParameterRow, Problem, RangeRow, driver_row, parameter_row, problems, range_row,
+};
 use crate::run::{Run, run};
 use crate::runner::Runner;
 use crate::scenario::{Drive, Home, Scenario, Value, parameter, parameters, take_starts};
 use crate::sweep::{Sweep, sweep};
 use crate::timing::FreeDriver;
-
-/// A diagnostic: severity, code, message, help, line and column of the primary place, both from 1.
-type Problem = (
-    &'static str,
-    &'static str,
-    String,
-    Option<String>,
-    Option<(usize, usize)>,
-);
-
-/// A parameter: name, description, value, unit, smallest and largest value, tolerance, whether it is
-/// derived.
-type ParameterRow = (
-    String,
-    String,
-    f64,
-    &'static str,
-    Option<f64>,
-    Option<f64>,
-    Option<f64>,
-    bool,
-);
-
-/// A driver: name, description, unit, start value of an input, limits, whether it is wrapped.
-type DriverRow = (
-    String,
-    String,
-    &'static str,
-    Option<f64>,
-    Option<f64>,
-    Option<f64>,
-    bool,
-);
-
-/// An end of a range: its kind, the driver's value, its text, the number of turns.
-type EndRow = (&'static str, Option<f64>, String, Option<u32>);
-
-/// The least or the greatest value of a measure, and the driver's value there.
-type ExtremeRow = (f64, f64);
-
-/// A range: both ends, then the change points with the bodies and connections that are dependent
-/// there, listed and in words, then by sample the driver's value, the transmission angle, the
-/// reciprocal condition, the poses of the bodies and the measures, then the extremes of these.
-type RangeRow<'py> = (
-    EndRow,
-    EndRow,
-    Vec<(f64, Vec<String>, String)>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Vec<(String, [ExtremeRow; 2])>,
-);
 
 /// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
 /// these are all.
@@ -192,32 +138,12 @@ impl Mechanism {
 
     #[getter]
     fn parameters(&self) -> Vec<ParameterRow> {
-        let row = |p: &Parameter| {
-            (
-                p.name.clone(),
-                p.description.clone(),
-                p.default,
-                p.unit.unwrap_or(Unit::ONE).name,
-                p.min,
-                p.max,
-                p.tolerance,
-                p.derived,
-            )
-        };
-        self.model.parameters.iter().map(row).collect()
+        self.model.parameters.iter().map(parameter_row).collect()
     }
 
     #[getter]
     fn drivers(&self) -> Vec<DriverRow> {
-        let drivers = self.model.drivers.iter();
-        drivers
-            .map(|d| {
-                let start = d.start();
-                let (name, description) = (d.name.clone(), d.description.clone());
-                let unit = d.coordinate.kind.unit().name;
-                (name, description, unit, start, d.min, d.max, d.wrapped)
-            })
-            .collect()
+        self.model.drivers.iter().map(driver_row).collect()
     }
 
     #[getter]
@@ -372,36 +298,7 @@ impl Mechanism {
             runner.start(&self.in_force(parameters)?)?;
             Ok((id, runner.solver.range(id, &RangeSettings::default())))
         })?;
-        let samples = || range.samples.iter();
-        let column = |values: Vec<f64>| values.into_pyarray(py);
-        let poses = 3 * self.model.bodies.len();
-        let crossings = range.crossings.iter();
-        Ok((
-            self.end(id, &range.lower),
-            self.end(id, &range.upper),
-            crossings
-                .map(|c| (c.value, c.bodies.clone(), c.geometry.clone()))
-                .collect(),
-            column(samples().map(|s| s.driver).collect()),
-            column(
-                samples()
-                    .map(|s| s.transmission.unwrap_or(f64::NAN))
-                    .collect(),
-            ),
-            column(samples().map(|s| s.rcond).collect()),
-            column(
-                samples()
-                    .flat_map(|s| s.pose.q[..poses].iter().copied())
-                    .collect(),
-            ),
-            column(samples().flat_map(|s| s.measures.iter().copied()).collect()),
-            (self.model.measures.iter().zip(&range.measures))
-                .map(|(measure, extremes)| {
-                    let extremes = extremes.map(|extreme| (extreme.value, extreme.driver));
-                    (measure.name.clone(), extremes)
-                })
-                .collect(),
-        ))
+        Ok(range_row(py, &self.model, id, &range))
     }
 
     /// Finds the other assembly modes at the start of a motion.
@@ -629,17 +526,6 @@ impl Mechanism {
             .map(|index| columns[*index].clone())
             .collect()
     }
-
-    fn end(&self, driver: DriverId, end: &End) -> EndRow {
-        let text = cli::describe_end(end, &self.model, driver);
-        match end {
-            End::Turns(turns) => ("turns", None, text, Some(*turns)),
-            End::Singular(point) => ("singular", Some(point.drivers[driver.index()]), text, None),
-            End::Blocked { value, .. } => ("blocked", Some(*value), text, None),
-            End::Bound { value } => ("bound", Some(*value), text, None),
-            End::NotFound { value } => ("not found", Some(*value), text, None),
-        }
-    }
 }
 
 fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Source, Failure> {
@@ -654,15 +540,4 @@ fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Sou
             .map_err(|error| Failure::File(format!("cannot read `{name}`: {error}"))),
         (None, None) => Err(Failure::Usage("expected a text or a path".to_owned())),
     }
-}
-
-fn problems(source: &Source, diagnostics: &[Diagnostic]) -> Vec<Problem> {
-    let problem = |d: &Diagnostic| {
-        let label = d.labels.first();
-        let position = label.map(|label| source.position(label.span.start));
-        let place = position.map(|position| (position.line, position.column));
-        let (message, help) = (d.message.clone(), d.help.clone());
-        (d.severity.as_str(), d.code, message, help, place)
-    };
-    diagnostics.iter().map(problem).collect()
 }
