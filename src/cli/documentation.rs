@@ -92,8 +92,7 @@ pub(super) fn documents(
         Scene::along(&input.mechanism, &home.parameters, &home.q, &poses, true)
     };
     let sheet = Sheet::small(&scene, &home.pose().q);
-    // In strokes, so that the archive is the same whatever the machine's fonts.
-    let picture = png::write(&sheet, ICON_WIDTH, false, None)
+    let picture = png::write(&sheet, ICON_WIDTH, false)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
     let document = |path: &str, content: Vec<u8>| Document {
         path: path.to_owned(),

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::Error;
 use super::output::{tell_written, write};
 use super::stdout::is_stdout;
-use crate::drawing::{Sheet, Typeface, png, svg};
+use crate::drawing::{Sheet, png, svg};
 
 /// The format of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +58,7 @@ impl Format {
     ) -> Result<(), Error> {
         let picture = match self {
             Self::Svg => svg::write(sheet, width, transparent).into_bytes(),
-            Self::Png => png::write(sheet, width, transparent, Typeface::of_machine().as_ref())
+            Self::Png => png::write(sheet, width, transparent)
                 .ok_or_else(|| Error::Usage(format!("no PNG is {width} pixels wide")))?,
         };
         write(path, &picture)?;

@@ -52,8 +52,6 @@ pub mod svg;
 mod sweep;
 pub mod symbol;
 mod ticks;
-#[cfg(feature = "png")]
-mod typeface;
 
 pub use anchor::{Anchor, Frame};
 pub use chart::{Axis, COLOURS, Chart, Line, Panel};
@@ -64,5 +62,3 @@ pub use scene::Scene;
 pub use sheet::Sheet;
 pub use sweep::usual_driver;
 pub use symbol::Symbol;
-#[cfg(feature = "png")]
-pub use typeface::Typeface;

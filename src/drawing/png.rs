@@ -12,7 +12,6 @@ use super::lettering;
 use super::outline::{Outline, Segment};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Sheet};
-use super::typeface::{Typeface, letters};
 
 /// Width of the strokes of letters.
 const LETTER_STROKE: f64 = 1.15;
@@ -23,15 +22,9 @@ pub const MOST_PIXELS: u32 = 16_384;
 /// Returns the drawing as a PNG file `width` pixels wide, on white or transparent; `None` for a
 /// picture without pixels or with more than [`MOST_PIXELS`] along a side.
 ///
-/// Texts are in the typeface given, each as wide as in an SVG. Without one their letters are made
-/// of strokes, and the same drawing gives the same bytes on all machines.
+/// Letters are made of strokes: the same drawing gives the same bytes on all machines.
 #[must_use]
-pub fn write(
-    sheet: &Sheet,
-    width: u32,
-    transparent: bool,
-    typeface: Option<&Typeface>,
-) -> Option<Vec<u8>> {
+pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
     let scale = f64::from(width) / sheet.width;
     let height = (scale * sheet.height).round() as u32;
     if width.max(height) > MOST_PIXELS {
@@ -58,15 +51,10 @@ pub fn write(
             pixels.stroke_path(&path, &paint, &style, transform, None);
         }
     }
-    let face = typeface.and_then(Typeface::face);
     for text in &sheet.texts {
-        let paint = paint(text.colour, 1.0);
-        if let Some(face) = &face {
-            if let Some(path) = path(&letters(face, text)) {
-                pixels.fill_path(&path, &paint, FillRule::Winding, transform, None);
-            }
-        } else if let Some(path) = path(&lettering::strokes(&text.content, text.start, CAPITALS)) {
-            pixels.stroke_path(&path, &paint, &style(LETTER_STROKE, None), transform, None);
+        if let Some(path) = path(&lettering::strokes(&text.content, text.start, CAPITALS)) {
+            let (paint, style) = (paint(text.colour, 1.0), style(LETTER_STROKE, None));
+            pixels.stroke_path(&path, &paint, &style, transform, None);
         }
     }
     Some(encode(&pixels))

@@ -68,7 +68,7 @@ fn charts_are_whole_and_labels_apart() {
     ] {
         assert!(labels.iter().any(|label| label.text == wanted), "{wanted}");
     }
-    assert!(png::write(&Sheet::chart(&chart()), WIDTH, false, None).is_some());
+    assert!(png::write(&Sheet::chart(&chart()), WIDTH, false).is_some());
 }
 
 #[test]

@@ -47,14 +47,14 @@ fn pngs_have_their_size_and_are_the_same_each_time() {
     let (mut solver, _) = assembled(&shipped("four_bar"));
     let scene = Scene::new(&mut solver, true);
     let sheet = Sheet::new(&scene, &solver.pose().q);
-    let picture = png::write(&sheet, 320, false, None).expect("it has a size");
+    let picture = png::write(&sheet, 320, false).expect("it has a size");
     assert_eq!(&picture[..8], b"\x89PNG\r\n\x1a\n");
     let width = u32::from_be_bytes(picture[16..20].try_into().expect("four bytes"));
     assert_eq!(width, 320);
-    assert!(picture == png::write(&sheet, 320, false, None).expect("it has a size"));
-    assert!(picture != png::write(&sheet, 320, true, None).expect("it has a size"));
-    assert_eq!(png::write(&sheet, 0, false, None), None);
-    assert_eq!(png::write(&sheet, png::MOST_PIXELS + 1, false, None), None);
+    assert!(picture == png::write(&sheet, 320, false).expect("it has a size"));
+    assert!(picture != png::write(&sheet, 320, true).expect("it has a size"));
+    assert_eq!(png::write(&sheet, 0, false), None);
+    assert_eq!(png::write(&sheet, png::MOST_PIXELS + 1, false), None);
 }
 
 /// A row of bars on pins, the first driven, each turning with the one before.

@@ -48,33 +48,6 @@ fn draw_writes_what_the_extension_says() {
     assert!(svg == std::fs::read(folder.path().join("four_bar.svg")).unwrap());
 }
 
-/// On other systems no setting hides the machine's fonts.
-#[cfg(target_os = "linux")]
-#[test]
-fn pngs_without_fonts_have_letters_of_strokes() {
-    let folder = tempfile::tempdir().unwrap();
-    let fonts = folder.path().join("fonts.conf");
-    let none = folder.path().join("none");
-    std::fs::create_dir(&none).unwrap();
-    let setting = format!("<fontconfig><dir>{}</dir></fontconfig>", none.display());
-    std::fs::write(&fonts, setting).unwrap();
-    let draw = |name: &str, fonts: Option<&std::path::Path>| {
-        let path = folder.path().join(name);
-        let mut command = Command::new(env!("CARGO_BIN_EXE_biela"));
-        command.current_dir(env!("CARGO_MANIFEST_DIR"));
-        if let Some(fonts) = fonts {
-            command.env("FONTCONFIG_FILE", fonts);
-        }
-        command.args(["draw", "mechanisms/four_bar.toml", "-o"]);
-        command.arg(&path).assert().success();
-        std::fs::read(path).unwrap()
-    };
-    let strokes = draw("strokes.png", Some(&fonts));
-    assert!(strokes == draw("again.png", Some(&fonts)));
-    let has_fonts = biela::drawing::Typeface::of_machine().is_some();
-    assert_eq!(strokes != draw("letters.png", None), has_fonts);
-}
-
 #[test]
 fn draw_shows_forces_with_their_sizes() {
     let draw = |mechanism: &str, more: &[&str]| {
