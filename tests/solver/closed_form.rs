@@ -1,6 +1,7 @@
 //! Position, velocity and acceleration of every body against closed forms.
 
-use crate::common::{EXACT, Errors, assembled, parse, shipped, straight_to};
+use crate::common::exact::{EXACT, Errors};
+use crate::common::{assembled, parse, shipped, straight_to};
 use crate::generated::{Ground, chain};
 use biela::kinematics::{Curve, Direction, InstantCentre, Rates, Reason, Solver};
 use biela::mechanism::{BodyId, DriverId, Jet, Order, ParameterId, Signal};

@@ -7,7 +7,8 @@ use biela::kinematics::{Path, Rates, Reason, SingularKind, Solver};
 use biela::mechanism::{Jet, Mechanism};
 use proptest::prelude::*;
 
-use crate::common::{Errors, Exact, assembled, parse, shipped, straight_to};
+use crate::common::exact::{Errors, Exact};
+use crate::common::{assembled, parse, shipped, straight_to};
 
 /// The parallelogram as shipped, and crossed: B is mirrored in the line from A to O4, so that the
 /// coupler turns by twice the angle of that line.

@@ -4,7 +4,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use crate::common::{EXACT, Exact, Instance, assembled, instance_of, parse, shipped, stems};
+use crate::common::exact::{EXACT, Exact};
+use crate::common::{Instance, assembled, instance_of, parse, shipped, stems};
 use biela::fmi::{Interface, State, value_reference};
 use biela::kinematics::{Curve, Error, Path, Pose, Progress, Rates, Solver};
 use biela::mechanism::{DriverId, Jet, Mechanism};

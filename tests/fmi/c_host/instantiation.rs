@@ -9,14 +9,13 @@ fn what_cannot_be_instantiated_is_null_and_tells_the_logger() {
     let fmu = Fmu::of("four_bar");
     let right = Instantiate::right(&fmu);
     let text = |text: &str| Some(text.to_owned());
-    let with_uri = |uri: &str| Instantiate {
-        uri: text(uri),
-        ..right.clone()
+    let with = |change: &dyn Fn(&mut Instantiate)| {
+        let mut with = right.clone();
+        change(&mut with);
+        with
     };
-    let with_guid = |guid: &str| Instantiate {
-        guid: text(guid),
-        ..right.clone()
-    };
+    let with_uri = |uri: &str| with(&|it| it.uri = text(uri));
+    let with_guid = |guid: &str| with(&|it| it.guid = text(guid));
     let broken = Fmu::of("pendulum");
     std::fs::write(
         broken.resources.join(biela::fmi::RESOURCE),
@@ -45,40 +44,19 @@ fn what_cannot_be_instantiated_is_null_and_tells_the_logger() {
         // No format of `printf`.
         (with_guid("%s%n%d"), "the GUID `%s%n%d` is not"),
         (with_guid(""), "the GUID `` is not"),
+        (with(&|it| it.guid = None), "`fmuGUID` is a null pointer"),
         (
-            Instantiate {
-                guid: None,
-                ..right.clone()
-            },
-            "`fmuGUID` is a null pointer",
-        ),
-        (
-            Instantiate {
-                uri: None,
-                ..right.clone()
-            },
+            with(&|it| it.uri = None),
             "`fmuResourceLocation` is a null pointer",
         ),
         (
-            Instantiate {
-                name: None,
-                ..right.clone()
-            },
+            with(&|it| it.name = None),
             "`instanceName` is a null pointer",
         ),
-        (
-            Instantiate {
-                name: text(""),
-                ..right.clone()
-            },
-            "`instanceName` is empty",
-        ),
+        (with(&|it| it.name = text("")), "`instanceName` is empty"),
         // At least one character that is no white space (2.1.5).
         (
-            Instantiate {
-                name: text(" \t"),
-                ..right.clone()
-            },
+            with(&|it| it.name = text(" \t")),
             "`instanceName` is empty or blank",
         ),
         (
@@ -103,19 +81,18 @@ fn what_cannot_be_instantiated_is_null_and_tells_the_logger() {
             with_uri(&format!("{}%00", fmu.uri())),
             "cannot read the mechanism",
         ),
-        (
-            Instantiate {
-                uri: Some(broken.uri()),
-                ..right.clone()
-            },
-            "2:8",
-        ),
+        (with_uri(&broken.uri()), "2:8"),
     ] {
         let reason = reason(&with);
         assert!(reason.contains(why), "{reason}");
     }
+}
 
-    // Not UTF-8: a lone start byte, and a letter of Latin-1.
+/// A lone start byte, and a letter of Latin-1.
+#[test]
+fn texts_that_are_not_utf_8_are_refused() {
+    let fmu = Fmu::of("four_bar");
+    let mut host = Host::start();
     for (field, name) in [
         (2, "instanceName"),
         (3, "fmuGUID"),
@@ -139,12 +116,18 @@ fn what_cannot_be_instantiated_is_null_and_tells_the_logger() {
             assert_eq!(answer.log[0].text, expected);
         }
     }
+}
 
-    // Without a logger there is nobody to tell.
+#[test]
+fn without_a_logger_nobody_is_told() {
+    let fmu = Fmu::of("four_bar");
+    let right = Instantiate::right(&fmu);
+    let mut host = Host::start();
     for callbacks in ["none", "no logger"] {
         let wrong = Instantiate {
             callbacks,
-            ..with_guid("wrong")
+            guid: Some("wrong".to_owned()),
+            ..right.clone()
         };
         assert_eq!(host.instantiate(A, &wrong), (false, vec![]));
     }

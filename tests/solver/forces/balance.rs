@@ -4,10 +4,12 @@
 //! Together with the directions in which a joint cannot exert a force, which are tested too, the
 //! laws determine all reactions.
 
+use std::sync::Arc;
+
 use biela::kinematics::{ForceQuantity, Reported};
 use biela::mechanism::{
-    BodyId, CamFollower, Coordinate, CoordinateKind, DriverId, Expression, JointKind, Load,
-    MarkerId, Mechanism,
+    Body, BodyId, CamFollower, Coordinate, CoordinateKind, DriverId, Expression, Joint, JointKind,
+    Load, MarkerId, Mechanism,
 };
 use nalgebra::{Rotation2, Vector2};
 
@@ -92,6 +94,123 @@ impl Balance<'_> {
             self.add(self.body(axes), i, Vector2::zeros(), couple);
         }
     }
+
+    fn value(&self, quantity: ForceQuantity) -> f64 {
+        self.loaded.forces.value(quantity)
+    }
+
+    /// Adds what a joint exerts on its bodies.
+    fn add_joint(&mut self, index: usize, joint: &Joint) {
+        let (i, j) = (self.body(joint.from), self.body(joint.to));
+        let at = self.point(joint.to);
+        let (force, torque) = self.reaction(index);
+        let (JointKind::Gear { sizes, carrier, .. } | JointKind::Belt { sizes, carrier, .. }) =
+            &joint.kind
+        else {
+            self.add(j, at, force, torque);
+            self.add(i, at, -force, -torque);
+            return;
+        };
+        let parameters = &self.loaded.solver.pose().parameters;
+        let [first, second] = sizes
+            .expressions()
+            .each_ref()
+            .map(|size: &Expression| size.evaluate(&|p| parameters[p.index()], 0.0));
+        let same_sense = match joint.kind {
+            JointKind::Gear { internal, .. } => internal,
+            JointKind::Belt { crossed, .. } => !crossed,
+            _ => unreachable!(),
+        };
+        let k = if same_sense {
+            first / second
+        } else {
+            -first / second
+        };
+        for (body, torque) in [
+            (j, torque),
+            (i, -k * torque),
+            (*carrier, (k - 1.0) * torque),
+        ] {
+            self.add(body, at, Vector2::zeros(), torque);
+        }
+    }
+
+    /// Returns the force and the torque of a joint on the body of its second marker.
+    fn reaction(&self, joint: usize) -> (Vector2<f64>, f64) {
+        let [x, y, torque] = [0, 1, 2].map(|k| self.value(ForceQuantity::Reaction(joint, k)));
+        (Vector2::new(x, y), torque)
+    }
+
+    /// Returns what a joint exerts where it cannot: its torque, and its force along the direction
+    /// in which it is free.
+    fn impossible(&self, index: usize, joint: &Joint) -> [f64; 2] {
+        let (force, torque) = self.reaction(index);
+        let across = |axis: Vector2<f64>| Vector2::new(-axis.y, axis.x);
+        let free = match &joint.kind {
+            JointKind::Slot
+            | JointKind::RevoluteTranslational { .. }
+            | JointKind::Translational => Some(self.axis(joint.from)),
+            JointKind::Link { .. } => Some(across(self.point(joint.to) - self.point(joint.from))),
+            JointKind::Cam {
+                follower: CamFollower::Flat,
+                ..
+            } => Some(self.axis(joint.to)),
+            // Along the teeth there is a force.
+            JointKind::RackAndPinion { .. } => Some(across(self.axis(joint.to))),
+            _ => None,
+        };
+        let along = free.map_or(0.0, |free| free.normalize().dot(&force));
+        let has_torque = Reported::of(&joint.kind).has(2);
+        [if has_torque { 0.0 } else { torque }, along]
+    }
+
+    /// Adds the efforts of drivers and constraints, and all forces of the file.
+    fn add_applied(&mut self) {
+        let mechanism = Arc::clone(self.loaded.solver.mechanism());
+        for (index, driver) in mechanism.drivers.iter().enumerate() {
+            let effort = self.value(ForceQuantity::Effort(DriverId(index)));
+            self.add_effort(&driver.coordinate, effort);
+        }
+        for (index, constraint) in mechanism.constraints.iter().enumerate() {
+            self.add_effort(
+                &constraint.coordinate,
+                self.value(ForceQuantity::Held(index)),
+            );
+        }
+        for (index, force) in mechanism.forces.iter().enumerate() {
+            let [x, y, torque] = [0, 1, 2].map(|k| self.value(ForceQuantity::Applied(index, k)));
+            match &force.load {
+                Load::Coordinate { coordinate, .. } => self.add_effort(coordinate, x),
+                Load::Marker { marker, axes, .. } => {
+                    let axis = axes.map_or(Vector2::x(), |axes| self.axis(axes));
+                    let across = Vector2::new(-axis.y, axis.x);
+                    let (body, at) = (self.body(*marker), self.point(*marker));
+                    self.add(body, at, axis * x + across * y, torque);
+                }
+            }
+        }
+    }
+
+    /// Adds weight and inertia of a body: Newton's and Euler's laws.
+    fn add_inertia(&mut self, index: usize, body: &Body) {
+        let pose = self.loaded.solver.pose();
+        let of = |e: &Expression| e.evaluate(&|p| pose.parameters[p.index()], 0.0);
+        let gravity = self.mechanism().simulation.gravity.each_ref().map(of);
+        let k = 3 * index;
+        let rates = &self.loaded.rates;
+        let (v, a) = (rates.velocity(), rates.acceleration());
+        let (omega, alpha) = (v[k + 2], a[k + 2]);
+        let center = body.center.as_ref().expect("it has one");
+        let [x, y] = center.each_ref().map(of);
+        let arm = Rotation2::new(pose.q[k + 2]) * Vector2::new(x, y);
+        let center = Vector2::new(pose.q[k], pose.q[k + 1]) + arm;
+        let across = Vector2::new(-arm.y, arm.x);
+        let acceleration = Vector2::new(a[k], a[k + 1]) + across * alpha - arm * omega * omega;
+        let mass = of(body.mass.as_ref().expect("it has one"));
+        let inertia = of(body.inertia.as_ref().expect("it has one"));
+        let force = (acceleration - Vector2::from(gravity)) * mass;
+        self.add(Some(BodyId(index)), center, -force, -inertia * alpha);
+    }
 }
 
 #[test]
@@ -105,132 +224,27 @@ fn every_body_is_in_balance() {
 
 fn check(name: &str, mut loaded: Loaded) {
     let rcond = loaded.solver.rcond();
-    let mechanism = std::sync::Arc::clone(loaded.solver.mechanism());
+    let mechanism = Arc::clone(loaded.solver.mechanism());
     let mut balance = Balance {
         loaded: &loaded,
         sums: vec![[0.0; 3]; mechanism.bodies.len()],
         largest: 0.0,
     };
-    let value = |quantity| loaded.forces.value(quantity);
     for (index, joint) in mechanism.joints.iter().enumerate() {
-        let [fx, fy, torque] = [0, 1, 2].map(|k| value(ForceQuantity::Reaction(index, k)));
-        let force = Vector2::new(fx, fy);
-        let (i, j) = (balance.body(joint.from), balance.body(joint.to));
-        let at = balance.point(joint.to);
-        if let JointKind::Gear { sizes, carrier, .. } | JointKind::Belt { sizes, carrier, .. } =
-            &joint.kind
-        {
-            let parameters = &loaded.solver.pose().parameters;
-            let [first, second] = sizes
-                .expressions()
-                .each_ref()
-                .map(|size: &Expression| size.evaluate(&|p| parameters[p.index()], 0.0));
-            let same_sense = match joint.kind {
-                JointKind::Gear { internal, .. } => internal,
-                JointKind::Belt { crossed, .. } => !crossed,
-                _ => unreachable!(),
-            };
-            let k = if same_sense {
-                first / second
-            } else {
-                -first / second
-            };
-            for (body, torque) in [
-                (j, torque),
-                (i, -k * torque),
-                (*carrier, (k - 1.0) * torque),
-            ] {
-                balance.add(body, at, Vector2::zeros(), torque);
-            }
-            continue;
-        }
-        balance.add(j, at, force, torque);
-        balance.add(i, at, -force, -torque);
+        balance.add_joint(index, joint);
+        let (force, torque) = balance.reaction(index);
         // A part of the mechanism's own lengths [m]: torques next to forces.
         let slack = 1e-12 / rcond * (force.norm() + torque.abs());
-        let along = |direction: Vector2<f64>| direction.normalize().dot(&force).abs();
-        let u = balance.axis(joint.from);
-        if !Reported::of(&joint.kind).has(2) {
-            assert!(
-                torque.abs() <= slack,
-                "{name}.{}: torque {torque}",
-                joint.name
-            );
-        }
-        match &joint.kind {
-            JointKind::Slot
-            | JointKind::RevoluteTranslational { .. }
-            | JointKind::Translational => {
-                assert!(along(u) <= slack, "{name}.{}: along the slide", joint.name);
-            }
-            JointKind::Link { .. } => {
-                let d = at - balance.point(joint.from);
-                let across = Vector2::new(-d.y, d.x);
-                assert!(
-                    along(across) <= slack,
-                    "{name}.{}: across the link",
-                    joint.name
-                );
-            }
-            JointKind::Cam {
-                follower: CamFollower::Flat,
-                ..
-            } => {
-                let face = balance.axis(joint.to);
-                assert!(
-                    along(face) <= slack,
-                    "{name}.{}: along the face",
-                    joint.name
-                );
-            }
-            JointKind::RackAndPinion { .. } => {
-                // Along the teeth.
-                let rack = balance.axis(joint.to);
-                let across = Vector2::new(-rack.y, rack.x);
-                assert!(along(across) <= slack, "{name}.{}", joint.name);
-            }
-            _ => {}
-        }
+        let impossible = balance.impossible(index, joint);
+        assert!(
+            impossible.iter().all(|part| part.abs() <= slack),
+            "{name}.{}: torque and force {impossible:?}",
+            joint.name
+        );
     }
-    for (index, driver) in mechanism.drivers.iter().enumerate() {
-        let effort = value(ForceQuantity::Effort(DriverId(index)));
-        balance.add_effort(&driver.coordinate, effort);
-    }
-    for (index, constraint) in mechanism.constraints.iter().enumerate() {
-        balance.add_effort(&constraint.coordinate, value(ForceQuantity::Held(index)));
-    }
-    for (index, force) in mechanism.forces.iter().enumerate() {
-        let [x, y, torque] = [0, 1, 2].map(|k| value(ForceQuantity::Applied(index, k)));
-        match &force.load {
-            Load::Coordinate { coordinate, .. } => balance.add_effort(coordinate, x),
-            Load::Marker { marker, axes, .. } => {
-                let axis = axes.map_or(Vector2::x(), |axes| balance.axis(axes));
-                let across = Vector2::new(-axis.y, axis.x);
-                let (body, at) = (balance.body(*marker), balance.point(*marker));
-                balance.add(body, at, axis * x + across * y, torque);
-            }
-        }
-    }
-    let pose = loaded.solver.pose();
-    let of = |e: &Expression| e.evaluate(&|p| pose.parameters[p.index()], 0.0);
-    let gravity = mechanism.simulation.gravity.each_ref().map(of);
+    balance.add_applied();
     for (index, body) in mechanism.bodies.iter().enumerate() {
-        let k = 3 * index;
-        let (v, a) = (loaded.rates.velocity(), loaded.rates.acceleration());
-        let (omega, alpha) = (v[k + 2], a[k + 2]);
-        let [x, y] = body
-            .center
-            .as_ref()
-            .map(|c| c.each_ref().map(of))
-            .expect("it has one");
-        let arm = Rotation2::new(pose.q[k + 2]) * Vector2::new(x, y);
-        let center = Vector2::new(pose.q[k], pose.q[k + 1]) + arm;
-        let across = Vector2::new(-arm.y, arm.x);
-        let acceleration = Vector2::new(a[k], a[k + 1]) + across * alpha - arm * omega * omega;
-        let mass = of(body.mass.as_ref().expect("it has one"));
-        let inertia = of(body.inertia.as_ref().expect("it has one"));
-        let force = (acceleration - Vector2::from(gravity)) * mass;
-        balance.add(Some(BodyId(index)), center, -force, -inertia * alpha);
+        balance.add_inertia(index, body);
     }
     let limit = ROUNDING / rcond * balance.largest * (1.0 + mechanism.bodies.len() as f64);
     for (body, sum) in mechanism.bodies.iter().zip(&balance.sums) {

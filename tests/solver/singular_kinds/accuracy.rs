@@ -4,7 +4,8 @@ use biela::kinematics::Rates;
 use biela::mechanism::{Jet, Variable};
 use proptest::prelude::*;
 
-use crate::common::{Errors, assembled, parse, straight_to};
+use crate::common::exact::Errors;
+use crate::common::{assembled, parse, straight_to};
 
 /// Distances of the driver from the change point \[rad\]: on the way to it, and beyond.
 const DISTANCES: [f64; 16] = [

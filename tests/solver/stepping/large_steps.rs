@@ -6,7 +6,8 @@ use biela::kinematics::{Curve, Reason};
 use biela::mechanism::Jet;
 use proptest::prelude::*;
 
-use crate::common::{EXACT, assembled, parse, shipped, straight_to};
+use crate::common::exact::EXACT;
+use crate::common::{assembled, parse, shipped, straight_to};
 use crate::stepping::{SAME_POSE, difference};
 
 proptest! {
