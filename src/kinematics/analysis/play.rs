@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::range::is_within;
 use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::estimate::go_to_estimate;
-use crate::kinematics::assembly::gaps::{gather, open_joints};
+use crate::kinematics::assembly::gaps::{CLOSED, gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::{Error, OpenJoint};
 use crate::kinematics::origin::Origin;
@@ -29,9 +29,6 @@ pub struct Play {
 
 /// Poses per turn of an angle; those of a length are this part of twice the mechanism's size apart.
 const POSES: usize = 180;
-/// Largest scaled residual of a row that counts as closed: the weight of the open one leaves the
-/// others some 1e-8 of its gap, times the leverage of their links.
-const HELD_CLOSED: f64 = 1e-7;
 
 impl Play {
     /// Moves a mechanism whose constraints contradict each other from its start values over the
@@ -155,7 +152,7 @@ impl Sweep<'_> {
         let mut others = (0..system.equations().len()).filter(|row| !self.own.contains(row));
         others.all(|row| {
             let value = system.evaluate_row(row, self.state.values(), |_, _| {});
-            value.value.abs() <= HELD_CLOSED
+            value.value.abs() <= CLOSED
         })
     }
 

@@ -56,11 +56,15 @@ pub(in crate::kinematics) fn open_joints(
     noticeable.collect()
 }
 
+/// Largest scaled residual of a nearest pose that counts as closed: no one could measure it. In a
+/// singular position, where Newton–Raphson fails, a minimisation comes no nearer; and where it
+/// [gathers](gather) a gap, the others keep some 1e-8 of it, times the leverage of their links.
+pub(in crate::kinematics) const CLOSED: f64 = 1e-7;
 /// Most minimisation steps towards the nearest pose of a mechanism that does not close.
 pub(in crate::kinematics) const STEPS_TO_NEAREST: usize = 200;
 /// Weight of all other rows when least squares concentrates the gap in one origin. The other rows
 /// stay open by about 1e-8 of the gap, below the digits of a message.
-const HOLD_CLOSED: f64 = 1e4;
+const WEIGHT_OF_OTHERS: f64 = 1e4;
 
 /// Concentrates the gap of some rows in one origin: unweighted least squares spreads it over all
 /// joints of a loop, but people look for one joint that is open. Returns the largest scaled
@@ -76,7 +80,7 @@ pub(in crate::kinematics) fn gather(
         if equations[row].origin == origin {
             1.0
         } else {
-            HOLD_CLOSED
+            WEIGHT_OF_OTHERS
         }
     };
     let mut state = state.block_state(&compiled.system);

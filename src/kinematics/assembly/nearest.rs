@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::branches::{Branches, SearchEffort};
 use super::closure::{close_on, is_small};
-use super::gaps::{STEPS_TO_NEAREST, gather, open_joints};
+use super::gaps::{CLOSED, STEPS_TO_NEAREST, gather, open_joints};
 use super::least_squares::LeastSquares;
 use super::part::{LARGEST_PART, STARTS};
 use super::search::{Nearest, NoBranch};
@@ -15,9 +15,6 @@ use crate::kinematics::origin::Origin;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 
-/// A nearest pose with a scaled residual up to this one is closed: no one could measure the gap,
-/// and in a singular position, where Newton–Raphson fails, a minimisation comes no nearer.
-const CLOSED: f64 = 1e-7;
 /// The quantity without a value where squares of lengths overflow.
 pub(in crate::kinematics) const AN_EQUATION: &str = "an equation of the mechanism";
 
@@ -51,7 +48,10 @@ pub(in crate::kinematics) fn search_at_once(
     }
     Err(match nearest {
         Some(nearest) => explain_gap(compiled, state, &failure, &nearest, estimate),
-        None => explain_failure(compiled, state, &failure, &mut whole),
+        None => {
+            let proof = proof(compiled, state, &failure, failure.block);
+            judge(compiled, state, &failure, proof, Some(&mut whole))
+        }
     })
 }
 
@@ -76,7 +76,8 @@ fn search_sparsely(
         return Ok(iterations);
     }
     state.move_to_pose(&compiled.system);
-    Err(explain_pose(compiled, state, &failure, failure.block))
+    let proof = proof(compiled, state, &failure, failure.block);
+    Err(judge(compiled, state, &failure, proof, None))
 }
 
 /// Minimises the whole from all starts and goes to the nearest pose. Unless that is `proved`
@@ -160,42 +161,60 @@ fn explain_gap(
     }
     state.accept_bodies();
     state.move_to_pose(&compiled.system);
-    judge(compiled, state, failure, proof)
+    judge(compiled, state, failure, proof, None)
 }
 
-/// Explains the pose, which is the nearest one found, by a block that does not close.
-fn explain_pose(
-    compiled: &mut CompiledMechanism,
-    state: &mut State,
-    failure: &NoBranch,
-    block: usize,
-) -> Error {
-    let proof = proof(compiled, state, failure, block);
-    judge(compiled, state, failure, proof)
-}
-
-/// Judges the pose, which is the nearest one found.
+/// Judges the pose, which is the nearest one found. Gathers its gap in one joint by `whole`, if that
+/// is given.
 fn judge(
     compiled: &mut CompiledMechanism,
     state: &mut State,
     failure: &NoBranch,
     proof: Proof,
+    whole: Option<&mut LeastSquares>,
 ) -> Error {
+    let beyond_numbers = || Error::NotFinite {
+        what: AN_EQUATION.to_owned(),
+    };
     let largest = state.residual(&compiled.system);
     if !largest.is_finite() {
-        return Error::NotFinite {
-            what: AN_EQUATION.to_owned(),
-        };
+        return beyond_numbers();
     }
     if !failure.proved && largest <= CLOSED {
         return Error::Singular {
-            rcond: state.rcond(compiled),
+            rcond: match whole {
+                Some(whole) => state.dense_rcond(&compiled.system, &whole.rows, &whole.columns),
+                None => state.rcond(compiled),
+            },
             bodies: Vec::new(),
         };
     }
     let rows: Vec<_> = (0..compiled.system.equations().len()).collect();
-    let open = open_joints(compiled, state, &rows, largest);
-    not_assembled(state, failure, proof, open)
+    let mut open = open_joints(compiled, state, &rows, largest);
+    if open.is_empty() {
+        return beyond_numbers();
+    }
+    let in_one = whole.and_then(|whole| gather_in_one(compiled, state, whole, &open));
+    if let Some((joint, q)) = in_one {
+        state.pose.q.copy_from_slice(&q);
+        state.move_to_pose(&compiled.system);
+        open = vec![joint];
+    }
+    let verdict = if failure.proved {
+        Verdict::Impossible {
+            proof: Box::new(proof),
+            ways: failure.dead_ends,
+        }
+    } else {
+        Verdict::NotFound {
+            starts: failure.starts,
+        }
+    };
+    Error::NotAssembled {
+        verdict,
+        open: open.into_iter().map(|(_, joint)| joint).collect(),
+        nearest: state.pose.q.clone(),
+    }
 }
 
 /// Returns the proof that a block does not close, where those before it are at the pose.
@@ -218,62 +237,6 @@ fn proof(
             boxes: failure.boxes,
         }
     })
-}
-
-fn not_assembled(
-    state: &State,
-    failure: &NoBranch,
-    proof: Proof,
-    open: Vec<(Origin, OpenJoint)>,
-) -> Error {
-    let verdict = if failure.proved {
-        Verdict::Impossible {
-            proof: Box::new(proof),
-            ways: failure.dead_ends,
-        }
-    } else {
-        Verdict::NotFound {
-            starts: failure.starts,
-        }
-    };
-    Error::NotAssembled {
-        verdict,
-        open: open.into_iter().map(|(_, joint)| joint).collect(),
-        nearest: state.pose.q.clone(),
-    }
-}
-
-/// Explains a mechanism whose nearest pose, which is that of the state, leaves gaps.
-fn explain_failure(
-    compiled: &mut CompiledMechanism,
-    state: &mut State,
-    failure: &NoBranch,
-    problem: &mut LeastSquares,
-) -> Error {
-    let beyond_numbers = || Error::NotFinite {
-        what: AN_EQUATION.to_owned(),
-    };
-    let largest = state.residual(&compiled.system);
-    if !largest.is_finite() {
-        return beyond_numbers();
-    }
-    if !failure.proved && largest <= CLOSED {
-        return Error::Singular {
-            rcond: state.dense_rcond(&compiled.system, &problem.rows, &problem.columns),
-            bodies: Vec::new(),
-        };
-    }
-    let spread = open_joints(compiled, state, &problem.rows, largest);
-    if spread.is_empty() {
-        return beyond_numbers();
-    }
-    let proof = proof(compiled, state, failure, failure.block);
-    let Some((joint, q)) = gather_in_one(compiled, state, problem, &spread) else {
-        return not_assembled(state, failure, proof, spread);
-    };
-    state.pose.q.copy_from_slice(&q);
-    state.move_to_pose(&compiled.system);
-    not_assembled(state, failure, proof, vec![joint])
 }
 
 /// Gathers the gap in one joint: the one with the smallest gap, on a tie the one declared last.
