@@ -123,7 +123,7 @@ const TOO_FAST: f64 = 1e100;
 
 /// Two poses are the same if no unknown differs by more, scaled and whole turns apart: after some
 /// thousand sub-steps, and up to a thousand turns, rounding is below that.
-const SAME_PLACE: f64 = 1e-9;
+const SAME_POSE: f64 = 1e-9;
 
 /// The rates of a single driver with respect to its own value.
 pub(super) const UNIT_RATE: [Jet; 1] = [Jet::new(0.0, [1.0, 0.0])];
@@ -375,7 +375,7 @@ impl State {
             } else {
                 0.0
             };
-            (difference.abs() < SAME_PLACE).then_some(turns)
+            (difference.abs() < SAME_POSE).then_some(turns)
         })
     }
 

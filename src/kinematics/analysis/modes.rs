@@ -38,7 +38,7 @@ pub struct Mode {
 }
 
 /// Starting points anywhere for a block without a complete list of branches.
-const STARTS_ANYWHERE: usize = 60;
+const STARTS_FOR_MODES: usize = 60;
 /// Most modes that are listed: independent blocks multiply theirs.
 const MOST_MODES: usize = 64;
 /// Most work of the search; see [`BranchSearch`].
@@ -57,7 +57,7 @@ pub(in crate::kinematics) fn modes(
     let estimate = estimate(&compiled.system, &state.pose.parameters)?;
     let home = state.pose.clone();
     state.release_crossings(compiled);
-    let effort = SearchEffort::Anywhere(STARTS_ANYWHERE);
+    let effort = SearchEffort::Anywhere(STARTS_FOR_MODES);
     let Closed {
         poses,
         starts,

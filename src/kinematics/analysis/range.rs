@@ -131,7 +131,7 @@ impl Default for RangeSettings {
 /// much turn a little only, so that a measure has one extreme there at most.
 const LARGEST_MOTION: f64 = 4.0;
 /// Most halvings between two samples.
-const MOST_HALVINGS: u32 = 6;
+const MOST_DIVISIONS: u32 = 6;
 /// Most samples between the last one and a limit.
 const MOST_BEFORE_LIMIT: f64 = 64.0;
 /// A change point this near to a sample, as part of the step there, is none of its own.
@@ -303,7 +303,7 @@ impl Explorer<'_> {
             let limit = point.drivers[self.driver.index()];
             self.approach_limit(&from, &reached, limit, samples);
         } else {
-            self.divide(&from, &reached, MOST_HALVINGS, samples);
+            self.divide(&from, &reached, MOST_DIVISIONS, samples);
         }
         self.state.restore(self.compiled, &reached);
         let place = self.place();
@@ -336,7 +336,7 @@ impl Explorer<'_> {
             self.state.restore(self.compiled, &from);
             if self.track(center).is_ok() {
                 let (place, pose) = (self.place(), self.state.pose.clone());
-                self.divide(&from, &pose, MOST_HALVINGS, samples);
+                self.divide(&from, &pose, MOST_DIVISIONS, samples);
                 samples.push(place);
                 from = pose;
             }

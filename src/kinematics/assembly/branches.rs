@@ -14,9 +14,9 @@ const STARTS_ANYWHERE: usize = 24;
 const FEW_UNKNOWNS: usize = 12;
 /// Largest difference of an unknown from its estimate, in radians and characteristic lengths, at
 /// which a branch found from the estimates is taken for the nearest one.
-const NEAR: f64 = 0.25;
+const NEAR_ESTIMATE: f64 = 0.25;
 /// Largest such difference of a branch where rows count turns; [`SearchEffort::AnyTurn`] has none.
-const FARTHEST: f64 = TAU;
+const FARTHEST_BRANCH: f64 = TAU;
 /// Branches whose squared distances from the estimates differ by less than this part are equally
 /// far.
 const EQUALLY_FAR: f64 = 1e-9;
@@ -253,11 +253,11 @@ impl Starts {
             None => false,
         };
         let distance = self.found[place].distance.largest;
-        if may_find_nearer && distance > NEAR {
+        if may_find_nearer && distance > NEAR_ESTIMATE {
             return None;
         }
         let counts = matches!(self.effort, SearchEffort::Near) && self.part.counts_turns;
-        if counts && distance > FARTHEST && !self.is_linear(state) {
+        if counts && distance > FARTHEST_BRANCH && !self.is_linear(state) {
             self.leaves_out = true;
             return None;
         }

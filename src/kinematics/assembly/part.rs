@@ -20,7 +20,7 @@ pub(in crate::kinematics) const STARTS: usize = 8;
 /// Minimisation steps from anywhere; a start that needs more is one of many.
 const STEPS_FROM_ANYWHERE: usize = 40;
 /// Points nearer than this part of the size of their part of the mechanism coincide.
-const TOUCHING: f64 = 1e-6;
+const COINCIDENT: f64 = 1e-6;
 /// Unknowns that differ by less than this, scaled, are the same.
 const SAME_UNKNOWN: f64 = 1e-6;
 /// Most unknowns of a part that is minimised from several starts.
@@ -127,7 +127,7 @@ impl LeastSquares {
             let equation = &state.system.equations()[row];
             let constraint = &equation.constraint;
             if !matches!(Relation::of(&**constraint), Relation::Distance(_))
-                || constraint.value(state.at) > TOUCHING * equation.size(state.at)
+                || constraint.value(state.at) > COINCIDENT * equation.size(state.at)
             {
                 continue;
             }

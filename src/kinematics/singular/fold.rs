@@ -10,15 +10,15 @@ use super::reduced::{Along, ReducedEquation, ReducedPoint};
 
 /// Places of the motion, as parts of the way in α to the point: on both sides of it, as beyond
 /// all of them a polynomial would multiply their rounding.
-const PLACES: [f64; 6] = [0.0, 0.3, 0.6, 1.4, 1.7, 2.0];
+const PARTS_OF_WAY: [f64; 6] = [0.0, 0.3, 0.6, 1.4, 1.7, 2.0];
 /// Distance in α of the place that tells how far the point is.
 const PROBE: f64 = 0.01;
 /// Largest difference of the point's τ from that without the first place, relative to the way to it.
-const SAME_PLACE: f64 = 1e-8;
+const SAME_TOP: f64 = 1e-8;
 /// Rounding of τ, which runs from 0 to 1.
-const PLACE_ROUNDING: f64 = 1e-14;
+const TOP_ROUNDING: f64 = 1e-14;
 /// Most Newton corrections of the maximum of the polynomial.
-const MAX_STEPS: usize = 20;
+const MOST_STEPS_TO_TOP: usize = 20;
 
 /// Finds the dead point ahead of the start on a path, within the distance `reach` of it.
 pub(super) fn find_fold(
@@ -41,7 +41,7 @@ pub(super) fn find_fold(
         return None;
     }
     let mut places = vec![first];
-    for part in &PLACES[1..] {
+    for part in &PARTS_OF_WAY[1..] {
         let here = places.last()?;
         places.push(equation.at_alpha(here, start.alpha + part * way)?);
     }
@@ -55,7 +55,7 @@ pub(super) fn find_fold(
     let (_, of_fewer) = top_of(&places[1..])?;
     let (before, behind) = (places[2].alpha, places[3].alpha);
     let is_between = (top - before) * (top - behind) < 0.0;
-    if !is_between || (tau - of_fewer).abs() > SAME_PLACE * (tau - start.tau) + PLACE_ROUNDING {
+    if !is_between || (tau - of_fewer).abs() > SAME_TOP * (tau - start.tau) + TOP_ROUNDING {
         return None;
     }
     for (k, scale) in equation.scales.iter().enumerate() {
@@ -118,7 +118,7 @@ impl Hermite {
     /// Returns the place of its maximum near an argument.
     fn top(&self, near: f64) -> Option<f64> {
         let mut argument = near;
-        for _ in 0..MAX_STEPS {
+        for _ in 0..MOST_STEPS_TO_TOP {
             let [_, first, second] = self.at(argument);
             let step = first / second;
             argument -= step;

@@ -10,17 +10,18 @@ use crate::mechanism::{DriverId, Jet};
 /// Distance from the point to either end of a crossing at first, and the least one, as turn of the
 /// fastest body or its way in characteristic lengths. Newton–Raphson at the distance δ gives
 /// accelerations to some eps/δ³, 1e-12 at the inner places of the first; the error of the
-/// polynomials falls with the twelfth power of the distance.
-const REACH: f64 = 0.25;
+/// polynomials falls with the twelfth power of the distance. No change point is looked for farther
+/// away than the first.
+pub(super) const REACH: f64 = 0.25;
 const LEAST_REACH: f64 = 0.004;
 /// Ratio of the distance of a trial to that of the one before it.
 const SHORTER: f64 = 0.8;
 /// Place between inner places and ends at which the error of the polynomials is about the largest.
 const BETWEEN: f64 = 0.85;
 /// Error of an acceleration, for velocities of one, with which no shorter crossing is tried.
-const GOOD: f64 = 4e-12;
+const ACCURATE_ENOUGH: f64 = 4e-12;
 /// Largest error of an acceleration, near the origin; farther away there is as much more rounding.
-const INTERPOLATED: f64 = 1e-6;
+const LARGEST_ERROR: f64 = 1e-6;
 /// Largest error of a prediction, as part of the distance between both motions.
 const OFF: f64 = 0.25;
 
@@ -71,13 +72,13 @@ pub(super) fn crossing_of(
                 alignment: Alignment::default(),
             };
             let error = error_between(&crossing, equation, &between, speed);
-            let most = INTERPOLATED * equation.extent();
+            let most = LARGEST_ERROR * equation.extent();
             let least = best.as_ref().map_or(most, |best| best.0);
             if error <= least {
                 best = Some((error, crossing));
             }
             // In shorter ones there is more rounding.
-            if error <= GOOD || error > least && best.is_some() {
+            if error <= ACCURATE_ENOUGH || error > least && best.is_some() {
                 break;
             }
         }

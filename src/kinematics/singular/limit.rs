@@ -37,7 +37,7 @@ const COMPARED: [f64; 2] = [-0.5, 0.5];
 /// Largest difference of the polynomials, as part of the largest value of its kind.
 const SMOOTH: f64 = 1e-6;
 /// Difference of the polynomials below which no nearer places are tried, which have more rounding.
-const GOOD: f64 = 1e-8;
+const SMOOTH_ENOUGH: f64 = 1e-8;
 /// Distance from the point, in ways of the fastest body, up to which a pose is at the point: a
 /// direct solution has half the digits there at best.
 const AT: f64 = 1e-7;
@@ -46,7 +46,7 @@ const STEADY: f64 = 0.5;
 /// Most halvings of the distance of neighbours, until the driver is steady and all numbers are smooth.
 const MOST_HALVINGS: u32 = 4;
 /// Most Newton steps to the time of a place.
-const MAX_STEPS: usize = 20;
+const MOST_STEPS_TO_PLACE: usize = 20;
 
 /// A change point so near to the pose that solutions with the Jacobian lose digits.
 #[derive(Debug)]
@@ -199,7 +199,7 @@ impl NearPoint {
                     *best = value;
                 }
             }
-            if best.iter().all(|best| best.difference <= GOOD) {
+            if best.iter().all(|best| best.difference <= SMOOTH_ENOUGH) {
                 break;
             }
         }
@@ -304,7 +304,7 @@ impl NearPoint {
             let way = (place - self.place) * self.apart;
             let is_steady = |rate: f64| rate / driver.first() >= STEADY;
             let mut close = false;
-            for _ in 0..MAX_STEPS {
+            for _ in 0..MOST_STEPS_TO_PLACE {
                 let [value, rate, _] = along(*time);
                 let off = value - driver.value - way;
                 close = off.abs() <= 1e-9 * self.apart;

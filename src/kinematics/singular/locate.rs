@@ -36,10 +36,10 @@ impl fmt::Display for SingularKind {
 pub(super) const EPSILON_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The same behind a block that comes from a crossing: the accuracy of the interpolation, which is
 /// more than the rounding of any mechanism near the origin.
-const INTERPOLATED: f64 = 1e-10;
+const EPSILON_INTERPOLATED: f64 = 1e-10;
 /// Most Newton corrections in the plane of α and τ. A few are enough where it converges
 /// quadratically; where motions touch, each of them removes about a third of the distance.
-const MAX_STEPS: usize = 60;
+const MOST_CORRECTIONS: usize = 60;
 /// A correction of this length, scaled, ends the search.
 const CONVERGED: f64 = 1e-13;
 /// A correction up to this length ends it as well once corrections stop falling: large angles have
@@ -67,7 +67,7 @@ pub(super) enum Finding {
 /// the speed of the motion there.
 pub(super) fn find(equation: &mut ReducedEquation<'_>, start: ReducedPoint, reach: f64) -> Finding {
     let rounding = if equation.reads_crossings() {
-        INTERPOLATED
+        EPSILON_INTERPOLATED
     } else {
         EPSILON_ROUNDING * equation.extent()
     };
@@ -131,7 +131,7 @@ fn newton(
 ) -> Option<ReducedPoint> {
     let speed = equation.speed;
     let mut last = f64::INFINITY;
-    for step in 0..MAX_STEPS {
+    for step in 0..MOST_CORRECTIONS {
         let ([f, g], [[fa, ft], [ga, gt]]) = equations(&point);
         let determinant = fa * gt - ft * ga;
         let by_alpha = -(f * gt - g * ft) / determinant;

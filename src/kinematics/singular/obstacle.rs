@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use super::crossings::enter_crossing;
 use super::fold::find_fold;
-use super::interpolate::crossing_of;
+use super::interpolate::{REACH, crossing_of};
 use super::lines::{LOCATED, find_lines};
 use super::locate::{EPSILON_ROUNDING, Finding, SingularKind, find};
 use super::near::{NEAR, block_jacobian, near_singular};
@@ -20,10 +20,7 @@ use crate::kinematics::state::State;
 use crate::kinematics::tolerances::SAME_PLACE_ON_PATH;
 use crate::mechanism::{DriverId, Jet};
 
-/// Distance within which a change point is looked for, in radians and characteristic lengths of
-/// the fastest unknown.
-const REACH: f64 = 0.25;
-/// The same for the position that stops the motion: near a dead point all unknowns are fast.
+/// [`REACH`] of the position that stops the motion: near a dead point all unknowns are fast.
 const REACH_TO_END: f64 = 0.5;
 /// A motion is stopped within this distance of a position that it cannot pass.
 const STOPPED: f64 = 0.02;

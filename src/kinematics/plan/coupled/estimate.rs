@@ -16,7 +16,7 @@
 //! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all other bounds of the rows).
 //!
 //! Two things are not bounds: norms are estimated from below, and one place represents the whole
-//! chord. The factor [`SAFETY`] allows for both. The sub-step is *checked*, not proved.
+//! chord. The factor [`ALLOWANCE`] allows for both. The sub-step is *checked*, not proved.
 //!
 //! A contour may have a lobe or a notch between two places, so rows that depend on a contour are
 //! bounded over the whole chord. Their values on the chord are at most an eighth of the bound of
@@ -32,8 +32,8 @@ use crate::kinematics::plan::step::{BlockState, Step};
 use crate::kinematics::system::Target;
 use crate::kinematics::tolerances::STALLED;
 
-/// Safety factor on estimates.
-const SAFETY: f64 = 2.0;
+/// Factor on estimates in place of a bound.
+const ALLOWANCE: f64 = 2.0;
 
 impl CoupledBlock {
     /// Looks for a radius that passes the test and writes it to `next`. Returns the sum of c and
@@ -54,7 +54,7 @@ impl CoupledBlock {
         self.lay_chord(state, step);
         self.move_to_chord(state, step, 0.0);
         self.evaluate_rows(state);
-        let drift = SAFETY * self.drift();
+        let drift = ALLOWANCE * self.drift();
         if drift.is_nan() {
             return Err(None);
         }
@@ -68,7 +68,7 @@ impl CoupledBlock {
             *slack += rounding + moved;
         }
         let larger = 1.0 / (1.0 - drift);
-        let gap = larger * SAFETY * self.farthest();
+        let gap = larger * ALLOWANCE * self.farthest();
         let mut radius = LARGER_RADII * gap + f64::EPSILON;
         let mut last = None;
         for _ in 0..MOST_TRIES {
@@ -208,6 +208,6 @@ impl CoupledBlock {
             ..
         } = &mut **test;
         let lu = &mut jacobian.lu;
-        Some([&*open, &*row].map(|b| SAFETY * condition.largest_row(lu, b)))
+        Some([&*open, &*row].map(|b| ALLOWANCE * condition.largest_row(lu, b)))
     }
 }
