@@ -15,9 +15,7 @@ use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::{
     End, EquationsOfMotion, Forces, Path, RangeSettings, Rates, Solution, Solver,
 };
-use crate::mechanism::{
-    Coordinate, CoordinateKind, DriverId, DriverSource, Jet, JointKind, Mechanism,
-};
+use crate::mechanism::{Coordinate, DriverId, DriverSource, Jet, Joint, Mechanism};
 
 /// The motion goes on in other coordinates if these move by so much, per unit of those in use:
 /// their sines are below a third then, and the equations lose less than a digit.
@@ -103,19 +101,7 @@ impl Charts {
         let own = freedoms
             .iter()
             .map(|id| mechanism.drivers[id.index()].coordinate);
-        let joints = mechanism.joints.iter().filter_map(|joint| {
-            let kind = match joint.kind {
-                JointKind::Revolute => CoordinateKind::Angle,
-                JointKind::Translational | JointKind::Slot => CoordinateKind::X,
-                _ => return None,
-            };
-            Some(Coordinate {
-                kind,
-                from: joint.from,
-                to: joint.to,
-                axes: joint.from,
-            })
-        });
+        let joints = mechanism.joints.iter().filter_map(Joint::free_coordinate);
         let candidates: Vec<_> = own
             .chain(joints)
             .map(|coordinate| Candidate {

@@ -10,7 +10,7 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::kinematics::tolerances::{DEPENDENT, LEAST_COEFFICIENT};
-use crate::mechanism::{BodyId, DriverId, JointKind, MarkerId, Mechanism};
+use crate::mechanism::{BodyId, Coordinate, DriverId, Joint, JointKind, MarkerId, Mechanism};
 
 /// Distance of the other poses that tell redundancy from a singular position, in radians and
 /// characteristic lengths: far enough for the rank to change, near enough for the mechanism to
@@ -195,23 +195,20 @@ fn coordinate_line(mechanism: &Mechanism, loose: &[String]) -> Option<String> {
     let is_loose = |marker: MarkerId| {
         body(marker).is_some_and(|body| loose.contains(&format!("body `{}`", name(body))))
     };
-    let coordinate = |kind: &JointKind| match kind {
-        JointKind::Revolute => Some("angle"),
-        JointKind::Translational | JointKind::Slot => Some("x"),
-        _ => None,
-    };
     let joints = mechanism.joints.iter();
     let moving = joints.filter(|joint| is_loose(joint.from) || is_loose(joint.to));
-    let joint = moving
-        .filter(|joint| coordinate(&joint.kind).is_some())
-        .min_by_key(|joint| body(joint.from).is_some() && body(joint.to).is_some())?;
-    let [from, to] = [joint.from, joint.to].map(|marker| mechanism.marker_path(marker));
-    let kind = coordinate(&joint.kind)?;
-    let line = format!(
-        "{} = {{ coordinate = \"{kind}\", markers = [\"{from}\", \"{to}\"] }}",
-        if kind == "angle" { "turn" } else { "travel" },
-    );
-    Some(line)
+    let Coordinate { kind, from, to, .. } = moving
+        .filter_map(Joint::free_coordinate)
+        .min_by_key(|of_joint| body(of_joint.from).is_some() && body(of_joint.to).is_some())?;
+    let [from, to] = [from, to].map(|marker| mechanism.marker_path(marker));
+    let (name, kind) = if kind.is_angle() {
+        ("turn", "angle")
+    } else {
+        ("travel", "x")
+    };
+    Some(format!(
+        "{name} = {{ coordinate = \"{kind}\", markers = [\"{from}\", \"{to}\"] }}"
+    ))
 }
 
 /// Returns the ranks at the present places of the bodies.

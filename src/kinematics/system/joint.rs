@@ -75,14 +75,7 @@ pub(super) fn relations(
 ) -> Vec<(Box<dyn Constraint>, Expression)> {
     let (from, to) = (joint.from, joint.to);
     let zero = || Expression::constant(0.0);
-    let along = |kind| {
-        of_coordinate(&Coordinate {
-            kind,
-            from,
-            to,
-            axes: from,
-        })
-    };
+    let along = |kind| of_coordinate(&joint.coordinate(kind));
     let coincide = |axis| -> (Box<dyn Constraint>, Expression) {
         (Box::new(Coincidence { from, to, axis }), zero())
     };
