@@ -46,7 +46,7 @@ macro_rules! template {
 }
 
 /// The mechanisms that come with biela.
-static TEMPLATES: [Template; 52] = [
+static TEMPLATES: &[Template] = &[
     template!("andrews"),
     template!("andrews_free"),
     template!("bicycle_suspension"),
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn templates_are_mechanisms_of_the_new_name() {
-        for template in &TEMPLATES {
+        for template in TEMPLATES {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("new.toml");
             std::fs::write(&path, renamed(template, "new_one")).unwrap();

@@ -76,7 +76,7 @@ macro_rules! joint_type {
 use joint_type;
 
 /// Every type of joint; a new one is a file and a line here.
-static JOINT_TYPES: [&JointType; 11] = [
+static JOINT_TYPES: &[&JointType] = &[
     &revolute::TYPE,
     &translational::TYPE,
     &slot::TYPE,
@@ -91,9 +91,10 @@ static JOINT_TYPES: [&JointType; 11] = [
 ];
 
 const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT_TYPE, || {
-    JOINT_TYPES
-        .map(|joint_type| (joint_type.name, joint_type))
-        .to_vec()
+    let joint_types = JOINT_TYPES.iter();
+    joint_types
+        .map(|&joint_type| (joint_type.name, joint_type))
+        .collect()
 })
 .with_synonyms(|text| {
     let is_meant = |term: &&str| term.eq_ignore_ascii_case(text);
