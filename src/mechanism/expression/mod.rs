@@ -150,6 +150,16 @@ impl Expression {
         Self::new(vec![Operation::Number(value)])
     }
 
+    /// Makes the multiple of a variable.
+    #[cfg(feature = "page")]
+    pub(crate) fn multiple(factor: f64, of: Variable) -> Self {
+        Self::new(vec![
+            Operation::Number(factor),
+            Operation::Variable(of),
+            Operation::Multiply,
+        ])
+    }
+
     fn new(program: Vec<Operation>) -> Self {
         let mut parameters: Vec<ParameterId> = program
             .iter()
