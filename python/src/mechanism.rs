@@ -484,7 +484,7 @@ impl Mechanism {
             self.source.text(),
             &self.model,
             parameters,
-            pose,
+            (pose, |_| None),
             Place::Whole,
         )
         .map_err(|error| Failure::File(error.to_string()))

@@ -17,7 +17,7 @@ impl Session {
     /// Finds the other assembly modes for the parameters and drivers in force. Returns their small
     /// pictures, and whether there are no others.
     pub fn assemblies(&mut self) -> Value {
-        let modes = match self.solver.modes() {
+        let modes = match self.apart_by_hand(|session| session.solver.modes()) {
             Ok(modes) => modes,
             Err(error) => return json!({ "error": error.to_string() }),
         };
@@ -51,6 +51,7 @@ impl Session {
             bodies: bodies.collect(),
             ..Mechanism::clone(own)
         });
+        self.take();
         let path = self.path_here().clone();
         match Solver::assembled(mechanism, &path) {
             Ok(solver) => {

@@ -19,14 +19,20 @@ pub enum Over {
 impl Session {
     /// Returns values of variables, by their places in the description, at `samples` points along
     /// time or a driver: `x`, and a list `y` per variable, with `null` where there is no value. The
-    /// pose is unchanged.
+    /// pose is unchanged. The time of a free motion begins where it was let go, or here if that is
+    /// more than the simulation's time ago.
     pub fn chart(&mut self, over: Over, variables: &[usize], samples: usize) -> Value {
+        let chart = |session: &mut Self| session.chart_apart(over, variables, samples);
+        match over {
+            Over::Time => self.apart(chart),
+            Over::Driver(_) => self.apart_by_hand(chart),
+        }
+    }
+
+    fn chart_apart(&mut self, over: Over, variables: &[usize], samples: usize) -> Value {
         let here = self.pose().clone();
         let ends = match over {
-            Over::Time => {
-                let simulation = &self.mechanism().simulation;
-                Some([simulation.start, simulation.stop])
-            }
+            Over::Time => Some(self.span()),
             Over::Driver(driver) => {
                 let range = self.ranges.get(driver.index()).cloned().flatten();
                 range.map(|range| {
@@ -76,11 +82,30 @@ impl Session {
                 }
             }
         }
-        self.solver.restore(&here);
-        self.refresh();
+        if self.freedoms.is_none() {
+            self.solver.restore(&here);
+            self.refresh();
+        }
         let x: Vec<f64> = rows.iter().map(|(x, _)| *x).collect();
         let y = (0..variables.len()).map(|k| rows.iter().map(|(_, y)| y[k]).collect::<Vec<f64>>());
         json!({ "x": x, "y": y.collect::<Vec<_>>() })
+    }
+
+    /// Returns start and end of the simulation; for freedoms, of as long a time from where they were
+    /// let go, or from here if that is over.
+    fn span(&self) -> [f64; 2] {
+        let simulation = &self.mechanism().simulation;
+        let [start, stop] = [simulation.start, simulation.stop];
+        if self.freedoms.is_none() {
+            return [start, stop];
+        }
+        let (first, now) = (self.start.pose.time, self.pose().time);
+        let low = if now > first + (stop - start) {
+            now
+        } else {
+            first
+        };
+        [low, low + (stop - start)]
     }
 
     /// Moves on to a point and adds a row there, or where the mechanism stops; false if it does.
@@ -100,16 +125,18 @@ impl Session {
                 }
             }
         }
-        let reached = self.follow(|_| true) == Outcome::Reached;
+        let outcome = if over == Over::Time && self.freedoms.is_some() {
+            self.fly(x)
+        } else {
+            self.follow(|_| true)
+        };
+        let reached = outcome == Outcome::Reached;
         self.refresh();
         let x = match over {
             Over::Time => self.pose().time,
             Over::Driver(driver) => self.pose().drivers[driver.index()],
         };
-        let known = |&index: &usize| self.outputs.get(index);
-        let values = variables
-            .iter()
-            .map(|index| known(index).map_or(f64::NAN, |output| self.value(output)));
+        let values = variables.iter().map(|index| self.variable(*index));
         rows.push((x, values.collect()));
         reached
     }

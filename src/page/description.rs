@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::ranges::{DriverRange, driver_speeds};
 use super::session::Session;
 use super::values::{is_told, shown_in};
-use crate::mechanism::{Mechanism, Parameter, Unit};
+use crate::mechanism::{DriverId, Mechanism, Parameter, Unit};
 
 impl Session {
     /// Returns what a page shows once: names, units, limits.
@@ -15,14 +15,11 @@ impl Session {
     pub fn description(&self) -> Value {
         let mechanism = self.mechanism();
         let pose = self.pose();
-        let drivers = mechanism
-            .drivers
-            .iter()
-            .zip(&pose.drivers)
-            .zip(&self.solution.driver_rates)
-            .zip(driver_speeds(mechanism, &self.ranges));
+        let drivers = mechanism.drivers.iter().enumerate();
+        let drivers = drivers.zip(driver_speeds(mechanism, &self.ranges));
         let drivers: Vec<Value> = drivers
-            .map(|(((driver, value), rates), usual)| {
+            .map(|((index, driver), usual)| {
+                let now = self.driver(DriverId(index));
                 let kind = driver.coordinate.kind;
                 let [(unit, factor), velocity, acceleration] =
                     kind.units().map(|unit| shown_in(unit, self.length));
@@ -31,9 +28,10 @@ impl Session {
                     "description": driver.description,
                     "is_angle": kind.is_angle(),
                     "is_input": driver.motion().is_none(),
-                    "value": value,
-                    "velocity": rates.first(),
-                    "acceleration": rates.second(),
+                    "is_free": driver.is_free(),
+                    "value": now.value,
+                    "velocity": now.first(),
+                    "acceleration": now.second(),
                     "unit": unit,
                     "factor": factor,
                     "usual_velocity": usual.first(),
@@ -61,7 +59,7 @@ impl Session {
                 })
             })
             .collect();
-        let variables: Vec<Value> = (self.outputs.iter())
+        let mut variables: Vec<Value> = (self.outputs.iter())
             .map(|output| {
                 let (unit, factor) = shown_in(output.unit, self.length);
                 json!({
@@ -72,6 +70,15 @@ impl Session {
                 })
             })
             .collect();
+        let energies = self.energies();
+        if energies.is_some() {
+            variables.push(json!({
+                "name": "energy.total",
+                "unit": Unit::JOULE.name,
+                "factor": 1.0,
+                "is_told": false,
+            }));
+        }
         let largest = largest_load(mechanism, &pose.parameters);
         let loads: Vec<Value> = (mechanism.force_inputs().iter().zip(&self.solution.loads))
             .map(|(input, load)| {
@@ -99,7 +106,9 @@ impl Session {
             "parameters": parameters,
             "variables": variables,
             "loads": loads,
-            "uses_time": mechanism.uses_time(),
+            "is_free": self.freedoms.is_some(),
+            "energies": energies.as_ref().map_or(&[][..], |energies| energies),
+            "uses_time": mechanism.uses_time() || self.freedoms.is_some(),
             "start": mechanism.simulation.start,
             "stop": mechanism.simulation.stop,
             "has_forces": self.solution.forces().is_some(),

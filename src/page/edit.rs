@@ -3,7 +3,7 @@
 use toml_edit::{Array, DocumentMut, Item, TableLike, TomlError, Value};
 
 use crate::kinematics::Pose;
-use crate::mechanism::{DriverSource, Mechanism, constant, rounded};
+use crate::mechanism::{DriverId, DriverSource, Mechanism, constant, rounded};
 
 /// A text that is no mechanism file.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -21,13 +21,14 @@ pub enum EditError {
 pub enum Place {
     /// Nothing: the file keeps its start values and estimates.
     Keep,
-    /// The start values of the drivers that are inputs.
+    /// The start values of freedoms and of the drivers that are inputs.
     Starts,
     /// Start values, and the estimates of all bodies: the file assembles at the pose.
     Whole,
 }
 
-/// Returns the text with the parameters of these names, and with `place` of the pose.
+/// Returns the text with the parameters of these names, and with `place` of the pose, which comes with
+/// the velocities that freedoms start with, where they are known.
 ///
 /// # Errors
 ///
@@ -36,7 +37,7 @@ pub fn edit(
     text: &str,
     mechanism: &Mechanism,
     names: &[String],
-    pose: &Pose,
+    (pose, velocity): (&Pose, impl Fn(DriverId) -> Option<f64>),
     place: Place,
 ) -> Result<String, EditError> {
     let mut document: DocumentMut = text.parse()?;
@@ -53,11 +54,18 @@ pub fn edit(
         }
     }
     if place != Place::Keep {
-        for (driver, value) in mechanism.drivers.iter().zip(&pose.drivers) {
-            if let DriverSource::Input { .. } = driver.source {
-                let drivers = table(root.get_mut("drivers"))?;
-                let driver = table(drivers.get_mut(&driver.name))?;
-                set(driver, "start", (*value).into());
+        let drivers = mechanism.drivers.iter().zip(&pose.drivers).enumerate();
+        for (index, (driver, value)) in drivers {
+            let (key, velocity) = match driver.source {
+                DriverSource::Input { .. } => ("drivers", None),
+                DriverSource::Free { .. } => ("freedoms", velocity(DriverId(index))),
+                DriverSource::Motion(_) => continue,
+            };
+            let drivers = table(root.get_mut(key))?;
+            let driver = table(drivers.get_mut(&driver.name))?;
+            set(driver, "start", (*value).into());
+            if let Some(velocity) = velocity {
+                set(driver, "velocity", velocity.into());
             }
         }
     }
@@ -144,7 +152,8 @@ mod tests {
             solver.assemble(&Path::new(&mechanism)).expect("it closes");
             let pose = solver.pose();
             let names = ["coupler_length".to_owned()];
-            let same = edit(&text, &mechanism, &names, pose, Place::Keep).expect("its own text");
+            let same = edit(&text, &mechanism, &names, (pose, |_| None), Place::Keep)
+                .expect("its own text");
             assert_eq!(same, text);
         }
     }

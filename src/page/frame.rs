@@ -4,14 +4,18 @@ use serde_json::{Value, json};
 
 use super::session::Session;
 use crate::kinematics::Rates;
+use crate::mechanism::DriverId;
 
 /// Number of values before the drivers: time, residual, reciprocal condition, whether rates exist.
 const HEAD: usize = 4;
+/// Number of values of the spring from the hand: x and y of its ends.
+const SPRING: usize = 4;
 
 impl Session {
     /// Returns the places in the list of numbers: `drivers` (value, velocity and acceleration
     /// each), `parameters`, `variables`, `joints` (point and force of each joint, in the picture
-    /// and in newtons, y down), then `attachments` (x, y and angle each), `lengths` and `points`
+    /// and in newtons, y down), `spring` (in the picture, from the body to the hand; not numbers
+    /// without one), then `attachments` (x, y and angle each), `lengths` and `points`
     /// (velocity and acceleration each) of the picture.
     #[must_use]
     pub fn layout(&self) -> Value {
@@ -19,8 +23,9 @@ impl Session {
         let drivers = HEAD;
         let parameters = drivers + 3 * mechanism.drivers.len();
         let variables = parameters + mechanism.parameters.len();
-        let joints = variables + self.outputs.len();
-        let attachments = joints + 4 * self.reactions();
+        let joints = variables + self.variables();
+        let spring = joints + 4 * self.reactions();
+        let attachments = spring + SPRING;
         let [frames, lengths] = self.picture.parts();
         json!({
             "time": 0,
@@ -32,6 +37,7 @@ impl Session {
             "variables": variables,
             "joints": joints,
             "joint_count": self.reactions(),
+            "spring": spring,
             "attachments": attachments,
             "lengths": attachments + 3 * frames,
             "points": attachments + 3 * frames + lengths,
@@ -53,11 +59,12 @@ impl Session {
         let pose = self.solver.pose();
         out.extend([pose.time, self.solver.residual(), rcond]);
         out.push(f64::from(u8::from(self.has_rates)));
-        for (value, rates) in pose.drivers.iter().zip(&self.solution.driver_rates) {
-            out.extend([*value, rates.first(), rates.second()]);
+        for index in 0..pose.drivers.len() {
+            let driver = self.driver(DriverId(index));
+            out.extend([driver.value, driver.first(), driver.second()]);
         }
         out.extend_from_slice(&pose.parameters);
-        out.extend(self.outputs.iter().map(|output| self.value(output)));
+        out.extend((0..self.variables()).map(|index| self.variable(index)));
         if let Some(forces) = self.solution.forces() {
             use crate::kinematics::ForceQuantity::Reaction;
             let none = Rates::new(pose.q.len());
@@ -69,6 +76,11 @@ impl Session {
                 out.extend([known(force[0]), -known(force[1])]);
             }
         }
+        let ends = self.spring.as_ref().map(|spring| {
+            let held = self.point(spring.body, spring.grip);
+            [held.into(), spring.hand].map(|end| self.picture.place(end))
+        });
+        out.extend(ends.unwrap_or([[f64::NAN; 2]; 2]).as_flattened());
         self.picture.add_places(&pose.q, out);
         let rates = &self.solution.rates;
         let rates = [rates.velocity(), rates.acceleration()];

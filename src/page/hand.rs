@@ -48,8 +48,8 @@ impl Session {
     }
 
     /// Pulls the point `grip` of a body, in its frame, towards a global point: the drivers that are
-    /// inputs take the values nearby at which it is nearest. If all drivers are prescribed motions,
-    /// time runs instead.
+    /// inputs and the freedoms take the values nearby at which it is nearest; freedoms rest there. If
+    /// all drivers are prescribed motions, time runs instead.
     ///
     /// The limits of the drivers hold; a dead point on the way stops the mechanism there.
     pub fn drag(&mut self, body: BodyId, grip: [f64; 2], target: [f64; 2]) -> Outcome {
@@ -58,8 +58,9 @@ impl Session {
         if handles.is_empty() || !is_known || !target.iter().all(|x| x.is_finite()) {
             return Outcome::Refused(Obstacle::new("nothing moves this body"));
         }
+        self.take();
         let outcome = self.pull(&handles, body, grip, Vector2::from(target));
-        self.refresh();
+        self.release_moved(true);
         outcome
     }
 
@@ -251,12 +252,12 @@ impl Session {
         self.follow(moves)
     }
 
-    fn place_of(&self, body: BodyId) -> [f64; 3] {
+    pub(super) fn place_of(&self, body: BodyId) -> [f64; 3] {
         [0, 1, 2].map(|k| self.pose().q[3 * body.index() + k])
     }
 
     /// Returns the global place of a point of a body.
-    fn point(&self, body: BodyId, grip: [f64; 2]) -> Vector2<f64> {
+    pub(super) fn point(&self, body: BodyId, grip: [f64; 2]) -> Vector2<f64> {
         let [x, y, phi] = self.place_of(body);
         let (sin, cos) = phi.sin_cos();
         let [u, v] = grip;

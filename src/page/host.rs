@@ -21,6 +21,8 @@ use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 /// | `set` | `parameter`, `value`, `anew` | an outcome |
 /// | `grab` | `body`, `at` (in the picture) | `grip` |
 /// | `drag` | `body`, `grip`, `at` (in the picture) | an outcome |
+/// | `hold` | `body`, `grip`, `at` (in the picture) | an outcome |
+/// | `let_go` | | |
 /// | `keep`, `undo`, `redo`, `reset` | | `done` |
 /// | `assemblies` | | `pictures`, `complete` |
 /// | `choose` | `index` | an outcome |
@@ -101,6 +103,10 @@ impl Host {
                 let (body, target) = (body(session)?, point(session)?);
                 session.drag(body, pair("grip")?, target)
             }
+            "hold" => {
+                let (body, hand) = (body(session)?, point(session)?);
+                session.hold(body, pair("grip")?, hand)
+            }
             "choose" => session.choose(index("index")?),
             _ => {
                 return Some(match word {
@@ -116,6 +122,10 @@ impl Host {
                     }
                     "load" => {
                         session.set_load(index("input")?, number("value")?);
+                        json!({})
+                    }
+                    "let_go" => {
+                        session.let_go();
                         json!({})
                     }
                     "grab" => json!({ "grip": session.grip(body(session)?, point(session)?) }),

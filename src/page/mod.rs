@@ -2,7 +2,8 @@
 //!
 //! A [`Session`] holds a mechanism at one pose, and does what a reader asks: move a driver, pull a
 //! body, change a parameter, go to a time, draw, chart, save. Every move is a path that the solver
-//! tracks, so the mechanism stays on its assembly mode and stops at dead points. [`Host`] answers
+//! tracks, so the mechanism stays on its assembly mode and stops at dead points. Freedoms move by the
+//! forces while time goes on, and the reader holds a body by a spring. [`Host`] answers
 //! requests in JSON, which the page's scripts send; `biela-page` compiles it for browsers.
 //!
 //! | file | subject |
@@ -11,8 +12,11 @@
 //! | `values` | outputs that are shown, and the units of their values |
 //! | `ranges` | ranges and speeds of the drivers |
 //! | `undo` | states that can be undone |
+//! | `freedoms` | the free motion of a session, and its states |
+//! | `spring` | a spring from the hand to a body |
 //! | `session` | [`Session`]: the mechanism and its moves |
 //! | `description` | names, units and limits, shown once |
+//! | `free` | free motion: time goes on, the hand pulls |
 //! | `hand` | a body that is pulled towards a point |
 //! | `assemblies` | the other positions in which the mechanism closes |
 //! | `chart` | variables over time or over a driver |
@@ -25,11 +29,14 @@ mod chart;
 mod description;
 mod edit;
 mod frame;
+mod free;
+mod freedoms;
 mod hand;
 mod host;
 mod outcome;
 mod ranges;
 mod session;
+mod spring;
 #[cfg(test)]
 mod tests;
 mod undo;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::kinematics::{End, RangeSettings, Solver};
-use crate::mechanism::{DriverId, Jet, Mechanism};
+use crate::mechanism::{Driver, DriverId, DriverSource, Jet, Mechanism};
 
 /// Resolution and extent of the ranges of drivers: steps of three degrees, one turn, lengths up to
 /// the size of the mechanism.
@@ -75,4 +75,19 @@ pub(super) fn driver_speeds(mechanism: &Mechanism, ranges: &[Option<DriverRange>
         None => 0.0,
     });
     rates.map(|rate| Jet::new(0.0, [rate, 0.0])).collect()
+}
+
+/// Returns the rates of the drivers at the start: the usual ones; beside freedoms, which move by
+/// themselves, all others rest.
+pub(super) fn start_rates(mechanism: &Mechanism, ranges: &[Option<DriverRange>]) -> Vec<Jet> {
+    if !mechanism.drivers.iter().any(Driver::is_free) {
+        return driver_speeds(mechanism, ranges);
+    }
+    let velocities = mechanism.drivers.iter().map(|driver| match driver.source {
+        DriverSource::Free { velocity, .. } => velocity,
+        _ => 0.0,
+    });
+    velocities
+        .map(|velocity| Jet::new(0.0, [velocity, 0.0]))
+        .collect()
 }

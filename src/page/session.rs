@@ -5,13 +5,15 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::edit::{EditError, Place, edit};
+use super::freedoms::{Freedoms, Moment};
 use super::outcome::{Obstacle, Outcome};
-use super::ranges::{DriverRange, driver_ranges, driver_speeds};
+use super::ranges::{DriverRange, driver_ranges, start_rates};
+use super::spring::Spring;
 use super::undo::{Kept, UndoHistory};
 use super::values::shown_in;
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
-use crate::kinematics::{Curve, Output, OutputSource, Path, Pose, Solution, Solver};
+use crate::kinematics::{Curve, ForceQuantity, Output, OutputSource, Path, Pose, Solution, Solver};
 use crate::mechanism::{
     DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source, Unit,
 };
@@ -21,15 +23,24 @@ pub struct Session {
     source: Source,
     /// Warnings about the file, one line each.
     pub(super) warnings: Vec<String>,
+    pub(super) mechanism: Arc<Mechanism>,
+    /// Solver of the mechanism; of a free motion, maybe in other coordinates and with a spring.
     pub(super) solver: Solver,
-    /// The pose at the start of the simulation, from which times are reached.
-    start: Pose,
+    /// The motion of freedoms, if there are some.
+    pub(super) freedoms: Option<Freedoms>,
+    /// The spring on which the reader holds a body.
+    pub(super) spring: Option<Spring>,
+    /// The start of the simulation, from which times are reached; for freedoms the moment at which
+    /// they were let go.
+    pub(super) start: Moment,
     /// Rates and forces; the rates of drivers that are inputs and the loads are the reader's.
     pub(super) solution: Solution,
     /// Whether rates and forces belong to the pose, where they exist.
     pub(super) has_rates: bool,
     pub(super) picture: MovingPicture,
     pub(super) outputs: Vec<Output>,
+    /// Kinetic and potential energy among the outputs of a free motion; their sum is a variable.
+    energies: Option<[usize; 2]>,
     pub(super) length: Option<DisplayUnit>,
     pub(super) ranges: Vec<Option<DriverRange>>,
     path: Path,
@@ -55,26 +66,32 @@ impl Session {
         let mechanism = Arc::new(mechanism);
         let path = Path::new(&mechanism);
         let mut solver = Solver::assembled(Arc::clone(&mechanism), &path).map_err(refuse)?;
-        let pose = solver.pose().clone();
         let (ranges, reached) = driver_ranges(&mut solver);
         let mut solution = Solution::new(&solver);
-        solution.driver_rates = driver_speeds(&mechanism, &ranges);
+        solution.driver_rates = start_rates(&mechanism, &ranges);
+        let freedoms = Freedoms::new(&solver).map_err(|error| vec![error.to_string()])?;
         if mechanism.has_dynamics() {
             solution.seek_forces(&solver);
         }
+        let start = Moment::of(&solver, None);
         let home = Kept {
             mechanism: Arc::clone(&mechanism),
-            start: pose.clone(),
-            pose,
+            start: start.clone(),
+            now: start.clone(),
         };
+        let outputs = Output::all(&mechanism);
         let mut session = Self {
             warnings,
-            start: home.start.clone(),
+            start,
+            energies: freedoms.as_ref().and_then(|_| energies(&outputs)),
+            freedoms,
+            spring: None,
             solution,
             has_rates: false,
             picture: MovingPicture::new(&mut solver, &reached, None),
-            outputs: Output::all(&mechanism),
+            outputs,
             length: mechanism.length_display(),
+            mechanism,
             ranges,
             path,
             home,
@@ -84,16 +101,18 @@ impl Session {
             source,
         };
         session.refresh();
+        session.home = session.now();
         Ok(session)
     }
 
     /// Returns the mechanism; its estimates may be those of another assembly mode than the file's.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
-        self.solver.mechanism()
+        &self.mechanism
     }
 
-    /// Returns the pose.
+    /// Returns the pose; where the motion of freedoms goes on in other coordinates, with their
+    /// values.
     #[must_use]
     pub fn pose(&self) -> &Pose {
         self.solver.pose()
@@ -101,8 +120,9 @@ impl Session {
 
     // -- moves -------------------------------------------------------------------------------
 
-    /// Moves a driver that is an input to a value \[m or rad\].
+    /// Moves a driver that is an input to a value \[m or rad\]. A freedom is let go from rest there.
     pub fn drive(&mut self, driver: DriverId, value: f64) -> Outcome {
+        self.take();
         let path = self.path_here();
         let Some(Curve::Input { position, .. }) = path.curves.get(driver.index()).copied() else {
             return Outcome::Refused(Obstacle::new("no driver that is an input"));
@@ -112,7 +132,7 @@ impl Session {
         }
         path.curves[driver.index()] = Curve::held(value, position);
         let outcome = self.follow(|id| id == driver);
-        self.refresh();
+        self.release_moved(self.mechanism.drivers[driver.index()].is_free());
         outcome
     }
 
@@ -120,6 +140,9 @@ impl Session {
     pub fn go_to(&mut self, time: f64) -> Outcome {
         if !time.is_finite() {
             return Outcome::Refused(Obstacle::new("the time is no finite number"));
+        }
+        if self.freedoms.is_some() {
+            return self.fly_to(time);
         }
         if time < self.pose().time
             && let Err(obstacle) = self.return_to_start()
@@ -143,6 +166,7 @@ impl Session {
         if let Some(message) = unfit(own, value) {
             return Outcome::Refused(Obstacle::new(message));
         }
+        self.take();
         let before = self.pose().clone();
         let mut values = before.parameters.clone();
         values[parameter.index()] = value;
@@ -150,7 +174,7 @@ impl Session {
         let path = self.path_here();
         path.to.clone_from(&values);
         let Err(blocked) = self.solver.track(&self.path) else {
-            self.refresh();
+            self.release_moved(false);
             return Outcome::Reached;
         };
         let mut obstacle = Obstacle::of_stop(&blocked, &self.solver, &self.path, |_| false);
@@ -163,8 +187,8 @@ impl Session {
         match Solver::assembled(Arc::clone(&mechanism), &path) {
             Ok(solver) if anew => {
                 self.solver.restore(solver.pose());
-                self.start = solver.pose().clone();
-                self.refresh();
+                self.start = self.here();
+                self.release_moved(true);
                 return Outcome::Reached;
             }
             Ok(_) => {
@@ -185,14 +209,16 @@ impl Session {
         Outcome::Refused(obstacle)
     }
 
-    /// Sets the rates of a driver that is an input \[m/s or rad/s, m/s² or rad/s²\].
+    /// Sets the rates of a driver that is an input \[m/s or rad/s, m/s² or rad/s²\], with which it
+    /// moves along with freedoms, or the velocity of a freedom.
     pub fn set_speed(&mut self, driver: DriverId, velocity: f64, acceleration: f64) {
+        self.take();
         let rates = [velocity, acceleration];
         if let Some(jet) = self.solution.driver_rates.get_mut(driver.index())
             && rates.iter().all(|rate| rate.is_finite())
         {
             *jet = Jet::new(0.0, rates);
-            self.refresh();
+            self.release_moved(false);
         }
     }
 
@@ -202,6 +228,7 @@ impl Session {
             && size.is_finite()
         {
             *load = size;
+            self.fly_on();
             self.refresh();
         }
     }
@@ -225,8 +252,13 @@ impl Session {
     /// Goes to the start of the simulation, with parameters and inputs as they are. A failure
     /// leaves the pose.
     pub(super) fn return_to_start(&mut self) -> Result<(), Obstacle> {
+        if self.freedoms.is_some() {
+            let start = self.start.clone();
+            self.return_to(&start);
+            return Ok(());
+        }
         let here = self.pose().clone();
-        self.solver.restore(&self.start);
+        self.solver.restore(&self.start.pose);
         let path = self.path_here();
         path.to.clone_from(&here.parameters);
         for (curve, value) in path.curves.iter_mut().zip(&here.drivers) {
@@ -238,14 +270,39 @@ impl Session {
             self.solver.restore(&here);
             return Err(obstacle);
         }
-        self.start = self.pose().clone();
+        self.start = self.here();
         Ok(())
     }
 
     /// Solves rates and forces at the pose.
     pub(super) fn refresh(&mut self) {
         self.solution.follow_motions(&self.solver);
-        self.has_rates = self.solution.solve(&mut self.solver).is_ok();
+        let moves = self.release().is_ok();
+        self.has_rates = self.solution.solve(&mut self.solver).is_ok() && moves;
+    }
+
+    /// Returns the number of variables that are shown.
+    pub(super) fn variables(&self) -> usize {
+        self.outputs.len() + usize::from(self.energies.is_some())
+    }
+
+    /// Returns the places of kinetic and potential energy and of their sum among the variables of a
+    /// free motion.
+    pub(super) fn energies(&self) -> Option<[usize; 3]> {
+        let [kinetic, potential] = self.energies?;
+        Some([kinetic, potential, self.outputs.len()])
+    }
+
+    /// Returns the value of a variable by its place \[SI\], not a number where there is none.
+    pub(super) fn variable(&self, index: usize) -> f64 {
+        match (self.outputs.get(index), self.energies) {
+            (Some(output), _) => self.value(output),
+            (None, Some(parts)) if index == self.outputs.len() => parts
+                .map(|part| self.value(&self.outputs[part]))
+                .iter()
+                .sum(),
+            _ => f64::NAN,
+        }
     }
 
     /// Returns the value of an output \[SI\], not a number where there is none.
@@ -268,6 +325,10 @@ impl Session {
     /// Draws the moving picture anew, as changed parameters demand: with `keep` at the same scale,
     /// otherwise with the ranges of the drivers, which are found anew, and at the scale that fits.
     pub fn redraw(&mut self, keep: bool) {
+        self.apart_by_hand(|session| session.draw_anew(keep));
+    }
+
+    fn draw_anew(&mut self, keep: bool) {
         self.picture = if keep {
             let scale = self.picture.scale();
             MovingPicture::new(&mut self.solver, &[], Some(scale))
@@ -287,20 +348,22 @@ impl Session {
 
     /// Returns the diagram of the pose, as `biela draw` writes it.
     pub fn diagram(&mut self) -> String {
-        let scene = Scene::new(&mut self.solver, true);
-        let sheet = Sheet::new(&scene, &self.solver.pose().q);
-        self.refresh();
-        svg::write(&sheet, sheet.width(), false)
+        self.apart_by_hand(|session| {
+            let scene = Scene::new(&mut session.solver, true);
+            let sheet = Sheet::new(&scene, &session.solver.pose().q);
+            session.refresh();
+            svg::write(&sheet, sheet.width(), false)
+        })
     }
 
     /// Returns the mechanism's file with the parameters as they are, and with start values and
-    /// estimates so that it assembles at the pose.
+    /// estimates so that it assembles at the pose; freedoms go on with their velocities.
     ///
     /// # Errors
     ///
     /// Those of [`edit`], which a file that was read does not have.
     pub fn text(&self) -> Result<String, EditError> {
-        let moved = self.pose() != &self.home.pose;
+        let moved = self.pose() != &self.home.now.pose;
         let place = if moved { Place::Whole } else { Place::Keep };
         self.edited(place)
     }
@@ -315,29 +378,34 @@ impl Session {
     }
 
     fn edited(&self, place: Place) -> Result<String, EditError> {
-        let pose = self.pose();
+        let pose = self.own_pose();
         let parameters = self.mechanism().parameters.iter().zip(&pose.parameters);
         let changed =
             parameters.filter(|(p, value)| !p.derived && p.default.to_bits() != value.to_bits());
         let names: Vec<String> = changed.map(|(p, _)| p.name.clone()).collect();
-        edit(self.source.text(), self.mechanism(), &names, pose, place)
+        let velocity = |freedom| Some(self.driver(freedom).first());
+        let text = self.source.text();
+        edit(text, self.mechanism(), &names, (&pose, velocity), place)
     }
 
     // -- undo --------------------------------------------------------------------------------
 
     /// Keeps the present state, to which [`undo`](Self::undo) returns.
     pub fn keep(&mut self) {
+        self.let_go();
         self.history.keep(self.now());
     }
 
     /// Returns to the state kept last; false if there is none.
     pub fn undo(&mut self) -> bool {
+        self.let_go();
         let back = self.history.undo(self.now());
         self.go_to_state(back)
     }
 
     /// Returns to the state that [`undo`](Self::undo) left; false if there is none.
     pub fn redo(&mut self) -> bool {
+        self.let_go();
         let back = self.history.redo(self.now());
         self.go_to_state(back)
     }
@@ -346,16 +414,15 @@ impl Session {
     pub fn reset(&mut self) {
         self.keep();
         self.go_to_state(Some(self.home.clone()));
-        let mechanism = Arc::clone(self.mechanism());
-        self.solution.driver_rates = driver_speeds(&mechanism, &self.ranges);
+        self.solution.driver_rates = start_rates(&self.mechanism, &self.ranges);
         self.solution.loads.fill(0.0);
-        self.refresh();
+        self.release_moved(false);
     }
 
     fn now(&self) -> Kept {
         Kept {
             mechanism: Arc::clone(self.mechanism()),
-            pose: self.pose().clone(),
+            now: self.here(),
             start: self.start.clone(),
         }
     }
@@ -370,9 +437,9 @@ impl Session {
         {
             // It has been assembled before, which chooses the rows that are solved.
             let _ = solver.assemble(&Path::new(solver.mechanism()));
-            self.solver = solver;
+            self.exchange(solver);
         }
-        self.solver.restore(&kept.pose);
+        self.return_to(&kept.now);
         self.start = kept.start;
         self.refresh();
         true
@@ -381,10 +448,30 @@ impl Session {
     /// Takes over a solver of the same mechanism with other estimates, at its pose.
     pub(super) fn adopt(&mut self, solver: Solver) {
         self.keep();
-        self.solver = solver;
-        self.start = self.pose().clone();
-        self.refresh();
+        self.exchange(solver);
+        self.start = self.here();
+        self.release_moved(true);
     }
+
+    /// Exchanges the solver for one of the same mechanism with other estimates.
+    fn exchange(&mut self, solver: Solver) {
+        self.take();
+        self.mechanism = Arc::clone(solver.mechanism());
+        self.freedoms = Freedoms::new(&solver).unwrap_or_default();
+        self.solver = solver;
+    }
+}
+
+/// Returns the places of kinetic and potential energy.
+fn energies(outputs: &[Output]) -> Option<[usize; 2]> {
+    let place = |quantity| {
+        let source = OutputSource::Force(quantity);
+        outputs.iter().position(|output| output.source == source)
+    };
+    Some([
+        place(ForceQuantity::KineticEnergy)?,
+        place(ForceQuantity::PotentialEnergy)?,
+    ])
 }
 
 /// Returns the reason why a parameter cannot have a value.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::kinematics::Pose;
+use super::freedoms::Moment;
 use crate::mechanism::Mechanism;
 
 /// Most states that can be undone.
@@ -12,8 +12,8 @@ const MOST_KEPT: usize = 200;
 #[derive(Clone)]
 pub(super) struct Kept {
     pub(super) mechanism: Arc<Mechanism>,
-    pub(super) pose: Pose,
-    pub(super) start: Pose,
+    pub(super) now: Moment,
+    pub(super) start: Moment,
 }
 
 /// The states before the present one, and those that were undone.
@@ -28,7 +28,11 @@ pub(super) struct UndoHistory {
 impl UndoHistory {
     /// Keeps a state, unless it is at the pose of the state kept last.
     pub(super) fn keep(&mut self, now: Kept) {
-        if self.kept.last().is_none_or(|kept| kept.pose != now.pose) {
+        if self
+            .kept
+            .last()
+            .is_none_or(|kept| kept.now.pose != now.now.pose)
+        {
             if self.kept.len() == MOST_KEPT {
                 self.kept.remove(0);
             }
@@ -40,7 +44,7 @@ impl UndoHistory {
     /// Returns the last state that is at another pose than the present one, which can be redone.
     pub(super) fn undo(&mut self, now: Kept) -> Option<Kept> {
         while let Some(kept) = self.kept.pop() {
-            if kept.pose != now.pose {
+            if kept.now.pose != now.now.pose {
                 self.undone.push(now);
                 return Some(kept);
             }

@@ -1,5 +1,7 @@
 //! Moves by hand against closed forms.
 
+mod free;
+
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
 use serde_json::{Value, json};
@@ -7,8 +9,8 @@ use serde_json::{Value, json};
 use super::{Host, Outcome, Session};
 use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 
-const FOUR_BAR: &str = include_str!("../../mechanisms/four_bar.toml");
-const FIVE_BAR: &str = include_str!("../../mechanisms/five_bar_robot.toml");
+const FOUR_BAR: &str = include_str!("../../../mechanisms/four_bar.toml");
+const FIVE_BAR: &str = include_str!("../../../mechanisms/five_bar_robot.toml");
 const CRANK: f64 = 0.10;
 
 fn open(text: &str) -> Session {

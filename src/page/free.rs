@@ -1,0 +1,242 @@
+//! Free motion: time goes on, the hand pulls by a spring, and what the reader sets lets go anew.
+
+use super::freedoms::{Carrier, Moment};
+use super::outcome::{Obstacle, Outcome};
+use super::session::Session;
+use super::spring::{Spring, mobility};
+use crate::dynamics::Error;
+use crate::kinematics::Pose;
+use crate::mechanism::{BodyId, DriverId, Jet, Signal, show_time};
+
+impl Session {
+    /// Returns value, velocity and acceleration of a driver, in the file's own coordinates.
+    pub(super) fn driver(&self, driver: DriverId) -> Jet {
+        let Self {
+            solver, solution, ..
+        } = self;
+        solver.signal(
+            Signal::Motion(driver),
+            &solution.rates,
+            &solution.driver_rates,
+        )
+    }
+
+    /// Returns the pose in the file's own coordinates.
+    pub(super) fn own_pose(&self) -> Pose {
+        let mut pose = self.pose().clone();
+        for (index, value) in pose.drivers.iter_mut().enumerate() {
+            *value = self.driver(DriverId(index)).value;
+        }
+        pose
+    }
+
+    /// Hangs the point `grip` of a body, in its frame, on a spring from the hand at a global point, or
+    /// moves the hand: freedoms follow while time goes on.
+    pub fn hold(&mut self, body: BodyId, grip: [f64; 2], hand: [f64; 2]) -> Outcome {
+        if !grip.iter().chain(&hand).all(|x| x.is_finite()) {
+            return Outcome::Refused(Obstacle::new("the hand is nowhere"));
+        }
+        let is_same = |spring: &Spring| {
+            spring.body == body && spring.grip.map(f64::to_bits) == grip.map(f64::to_bits)
+        };
+        if !self.spring.as_ref().is_some_and(is_same) {
+            self.let_go();
+            if let Err(message) = self.hang(body, grip, hand) {
+                return Outcome::Refused(Obstacle::new(message));
+            }
+        }
+        if let Some(spring) = &mut self.spring {
+            spring.hand = hand;
+            spring.load(&mut self.solution.loads);
+        }
+        self.fly_on();
+        self.refresh();
+        Outcome::Reached
+    }
+
+    /// Takes the spring away, if a body hangs on one.
+    pub fn let_go(&mut self) {
+        if let Some(spring) = self.spring.take() {
+            let mut other = spring.other;
+            self.carry_on(&mut other);
+            self.refresh();
+        }
+    }
+
+    fn hang(&mut self, body: BodyId, grip: [f64; 2], hand: [f64; 2]) -> Result<(), String> {
+        let point = self.point(body, grip);
+        let [x, y, _] = self.place_of(body);
+        let arm = [point.x - x, point.y - y];
+        let Some(freedoms) = &self.freedoms else {
+            return Err("nothing moves by forces".to_owned());
+        };
+        let mobility = mobility(&mut self.solver, freedoms, body, arm);
+        let mobility = mobility.ok_or("no freedom moves this body")?;
+        let held = (body, grip, hand);
+        let mut spring = Spring::new(&self.solver, &self.mechanism, mobility, held)?;
+        self.carry_on(&mut spring.other);
+        self.spring = Some(spring);
+        self.refresh();
+        Ok(())
+    }
+
+    /// Exchanges the mechanism for one with other forces, which goes on from here.
+    fn carry_on(&mut self, other: &mut Carrier) {
+        let Some(freedoms) = &mut self.freedoms else {
+            return;
+        };
+        freedoms.carry(&self.solver, &self.solution, other);
+        std::mem::swap(&mut self.solver, &mut other.solver);
+        std::mem::swap(&mut self.solution, &mut other.solution);
+        std::mem::swap(freedoms, &mut other.freedoms);
+    }
+
+    /// Moves on to a time; before the present one, from where the motion was let go.
+    pub(super) fn fly_to(&mut self, time: f64) -> Outcome {
+        let mut outcome = Outcome::Reached;
+        if time < self.pose().time {
+            self.let_go();
+            if let Err(obstacle) = self.return_to_start() {
+                return Outcome::Refused(obstacle);
+            }
+            let first = self.start.pose.time;
+            if time < first {
+                let message = format!("the motion was let go at t = {} s", show_time(first));
+                outcome = Outcome::Stopped(Obstacle::new(message));
+            }
+        }
+        if outcome == Outcome::Reached {
+            outcome = self.fly(time);
+        }
+        self.refresh();
+        outcome
+    }
+
+    /// Moves on to a time that is not before the present one. Rates are not solved.
+    pub(super) fn fly(&mut self, time: f64) -> Outcome {
+        let flown = self.release().and_then(|()| {
+            let Self {
+                solver,
+                solution,
+                freedoms: Some(freedoms),
+                ..
+            } = self
+            else {
+                return Ok(());
+            };
+            let flown = freedoms.advance(solver, solution, time);
+            (solution.driver_rates).copy_from_slice(freedoms.motion.drivers());
+            flown
+        });
+        match flown {
+            Ok(()) => Outcome::Reached,
+            Err(error) => Outcome::Stopped(Obstacle::new(error.to_string())),
+        }
+    }
+
+    /// Takes over inputs of forces that have changed. Rates are not solved.
+    pub(super) fn fly_on(&mut self) {
+        if self.freedoms.is_some() {
+            // A motion that cannot go on says so when time does.
+            self.fly(self.pose().time);
+            self.start = self.here();
+        }
+    }
+
+    /// Lets freedoms move by the forces, from the pose on with the rates in force.
+    pub(super) fn release(&mut self) -> Result<(), Error> {
+        let Self {
+            solver,
+            solution,
+            freedoms: Some(freedoms),
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        let begins = freedoms.release(solver, solution)?;
+        (solution.driver_rates).copy_from_slice(freedoms.motion.drivers());
+        if begins {
+            self.start = self.here();
+        }
+        Ok(())
+    }
+
+    /// Prepares a move by hand: without a spring, in the file's own coordinates.
+    pub(super) fn take(&mut self) {
+        self.let_go();
+        if self.freedoms.is_none() {
+            return;
+        }
+        let mut pose = self.own_pose();
+        let rates = (0..pose.drivers.len()).map(|index| self.driver(DriverId(index)));
+        let rates: Vec<Jet> = rates.collect();
+        let Self {
+            solver,
+            solution,
+            freedoms: Some(freedoms),
+            ..
+        } = self
+        else {
+            return;
+        };
+        if freedoms.take_own(solver, solution) {
+            pose.crossings.clear();
+            solver.restore(&pose);
+            solution.driver_rates = rates;
+            freedoms.is_released = false;
+        }
+    }
+
+    /// Lets go after a move by hand: of freedoms that `rest`, or with the velocities that they have.
+    pub(super) fn release_moved(&mut self, rest: bool) {
+        if let Some(freedoms) = &mut self.freedoms {
+            freedoms.is_released = false;
+            for freedom in freedoms.motion.freedoms() {
+                if rest {
+                    self.solution.driver_rates[freedom.index()] = Jet::constant(0.0);
+                }
+            }
+        }
+        self.refresh();
+    }
+
+    /// Does what moves the mechanism, and returns to where it was. Others than freedoms return by
+    /// themselves.
+    pub(super) fn apart<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
+        if self.freedoms.is_none() {
+            return act(self);
+        }
+        let (here, start) = (self.here(), self.start.clone());
+        let done = act(self);
+        self.return_to(&here);
+        self.start = start;
+        self.refresh();
+        done
+    }
+
+    /// Does what moves the mechanism [by hand](Self::take), and returns to where it was.
+    pub(super) fn apart_by_hand<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
+        self.let_go();
+        self.apart(|session| {
+            session.take();
+            act(session)
+        })
+    }
+
+    /// Notes the present state.
+    pub(super) fn here(&self) -> Moment {
+        Moment::of(&self.solver, self.freedoms.as_ref())
+    }
+
+    /// Returns to a state of the same mechanism.
+    pub(super) fn return_to(&mut self, moment: &Moment) {
+        let Self {
+            solver,
+            solution,
+            freedoms,
+            ..
+        } = self;
+        moment.restore(solver, solution, freedoms.as_mut());
+    }
+}
