@@ -25,8 +25,9 @@ export class Chart {
     this.choice.replaceChildren();
     const told = page.variables.findIndex((variable, index) => variable.is_told && index >= 3 * page.drivers.length);
     const first = told < 0 ? page.variables.length - 3 : told;
+    const usual = page.energies.length ? page.energies : [first];
     page.variables.forEach((variable, index) => {
-      const chosen = before.length ? before.includes(variable.name) : index === first;
+      const chosen = before.length ? before.includes(variable.name) : usual.includes(index);
       this.choice.add(new Option(variable.name, index, chosen, chosen));
     });
   }
@@ -72,7 +73,9 @@ export class Chart {
     chosen.forEach((variable, index) => {
       const { name, unit, factor } = this.live.page.variables[variable];
       const y = data.y[index].map((value) => (value === null ? null : value * factor));
-      this.panels.push(panel(this.place, axis, data.x, { name, unit, y }));
+      // An energy that is kept has the errors of integration.
+      const constant = this.live.page.is_free ? 1e-6 : 1e-9;
+      this.panels.push(panel(this.place, axis, data.x, { name, unit, y, constant }));
     });
     this.move();
   }
@@ -80,6 +83,11 @@ export class Chart {
   /** Moves the cursors to the present pose. */
   move() {
     const now = this.live.frame?.[this.axis.at];
+    // Free motion goes on beyond the chart.
+    if (this.live.page.is_free && this.panels.some(({ low, high }) => now < low || now > high)) {
+      this.draw();
+      return;
+    }
     for (const { cursor, low, high } of this.panels) {
       // A crank that has turned further is shown in the turn of the chart.
       const turn = high - low;
@@ -92,11 +100,11 @@ export class Chart {
   }
 }
 
-function panel(place, axis, x, { name, unit, y }) {
+function panel(place, axis, x, { name, unit, y, constant }) {
   const known = y.filter((value) => value !== null);
   let [low, high] = [Math.min(...known), Math.max(...known)];
   // A constant is a line in the middle.
-  const least = 1e-9 * Math.max(1e-3, Math.abs(low), Math.abs(high));
+  const least = constant * Math.max(1e-3, Math.abs(low), Math.abs(high));
   if (!(high - low > least)) {
     [low, high] = [low - 1, high + 1];
   }

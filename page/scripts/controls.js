@@ -13,7 +13,10 @@ export function add(parent, name, properties = {}, ...children) {
   return parent.appendChild(element);
 }
 
-/** Offers in a list what can move: time, and the drivers that are inputs. A choice made before stays. */
+/**
+ * Offers in a list what can move: time, and the drivers that are inputs where no freedoms move by
+ * themselves. A choice made before stays.
+ */
 export function offerMoves(list, page) {
   const before = list.value;
   list.replaceChildren();
@@ -21,7 +24,7 @@ export function offerMoves(list, page) {
     list.add(new Option("time", "time"));
   }
   page.drivers.forEach((driver, index) => {
-    if (driver.is_input) {
+    if (driver.is_input && !page.is_free) {
       list.add(new Option(driver.name, index));
     }
   });

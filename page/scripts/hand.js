@@ -1,4 +1,4 @@
-// A hand that pulls bodies, by mouse or finger.
+// A hand that pulls bodies, by mouse or finger; by a spring while freedoms move.
 
 /** Lets the pointer pull the bodies of a picture; `live` solves and draws. */
 export function giveHand(paper, live) {
@@ -15,19 +15,24 @@ export function giveHand(paper, live) {
     }
     event.preventDefault();
     paper.setPointerCapture(event.pointerId);
-    live.play.stop();
-    live.keep();
+    if (!live.flies) {
+      live.play.stop();
+      live.keep();
+    }
     const at = live.picture.onSheet(event.clientX, event.clientY);
     const answer = live.ask({ do: "grab", body, at });
     held = answer && { id: event.pointerId, body, grip: answer.grip, at };
     paper.classList.add("held");
+    if (live.flies) {
+      pull();
+    }
   });
 
   // One solution per picture, towards the last place of the pointer.
   function pull() {
     waiting = false;
     if (held) {
-      live.move({ do: "drag", body: held.body, grip: held.grip, at: held.at });
+      live.move({ do: live.flies ? "hold" : "drag", body: held.body, grip: held.grip, at: held.at });
     }
   }
 
@@ -49,6 +54,10 @@ export function giveHand(paper, live) {
         pull();
       }
       held = null;
+      if (live.page.is_free) {
+        live.ask({ do: "let_go" });
+        live.draw();
+      }
       paper.classList.remove("held");
       live.settle();
     }

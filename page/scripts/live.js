@@ -107,6 +107,11 @@ class Live {
     this.open(this.file);
   }
 
+  /** Whether freedoms move at present. */
+  get flies() {
+    return this.page.is_free && this.play.playing;
+  }
+
   // -- what is shown -------------------------------------------------------------------------
 
   /** Shows a description and a picture. */
@@ -126,6 +131,7 @@ class Live {
     const { frame, places, page } = this;
     this.picture.draw(frame, places);
     this.drivers.forEach((row, index) => row?.set(frame[places.drivers + 3 * index]));
+    this.velocities.forEach((row, index) => row.set(frame[places.drivers + 3 * index + 1]));
     this.parameters.forEach((row, index) => row.set(frame[places.parameters + index]));
     for (const [output, variable] of this.values) {
       const { unit, factor } = page.variables[variable];
@@ -150,6 +156,7 @@ class Live {
 
   makeRows() {
     const { page } = this;
+    this.find(".driver-title").textContent = page.is_free ? "Drivers and freedoms" : "Drivers";
     const drivers = this.find(".driver-rows");
     drivers.replaceChildren();
     this.drivers = page.drivers.map((driver, index) => {
@@ -200,24 +207,33 @@ class Live {
         set(next);
       });
       made.set(value);
+      return made;
     };
+    // Those that change by themselves, by driver.
+    this.velocities = [];
     page.drivers.forEach((driver, index) => {
       if (!driver.is_input) {
         return;
       }
-      const rates = { velocity: driver.velocity, acceleration: driver.acceleration };
-      const largest = { velocity: 4 * driver.usual_velocity, acceleration: 8 * driver.usual_velocity };
-      for (const rate of Object.keys(rates)) {
+      const largest = {
+        velocity: Math.max(4 * driver.usual_velocity, 2 * Math.abs(driver.velocity)),
+        acceleration: 8 * driver.usual_velocity,
+      };
+      for (const rate of driver.is_free ? ["velocity"] : ["velocity", "acceleration"]) {
         const item = {
           name: `${driver.name}.${rate}`,
           description: driver.description,
           unit: driver[`${rate}_unit`],
           factor: driver[`${rate}_factor`],
         };
-        row(item, -largest[rate], largest[rate], rates[rate], (value) => {
-          rates[rate] = value;
-          this.give({ do: "speed", driver: index, ...rates });
+        const made = row(item, -largest[rate], largest[rate], driver[rate], (value) => {
+          const at = this.places.drivers + 3 * index;
+          const [velocity, acceleration] = this.frame.slice(at + 1, at + 3);
+          this.give({ do: "speed", driver: index, velocity, acceleration, [rate]: value });
         });
+        if (page.is_free && rate === "velocity") {
+          this.velocities[index] = made;
+        }
       }
     });
     page.loads.forEach((load, index) =>

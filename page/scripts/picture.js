@@ -31,6 +31,7 @@ export class Picture {
       const group = this.svg.querySelector(`.arrows.${kind}`) ?? this.add("g", `arrows ${kind}`);
       this.arrows[kind] = [group, []];
     }
+    this.spring = this.add("path", "spring");
     this.marker = this.add("g", "stop");
     this.marker.innerHTML = '<circle r="15"/><path d="M-5 -5L5 5M-5 5L5 -5"/>';
     this.mark(null);
@@ -59,6 +60,8 @@ export class Picture {
     const { attachments, lengths } = places;
     const placed = (attachment) => frame.subarray(attachments + 3 * attachment, attachments + 3 * attachment + 3);
     this.moving.draw(placed, (length) => frame[lengths + length]);
+    const [x, y, u, v] = frame.subarray(places.spring, places.spring + 4);
+    this.spring.setAttribute("d", Number.isFinite(x) ? `M${fix(x)} ${fix(y)}L${fix(u)} ${fix(v)}` : "");
     const points = this.parts.points.map(({ attachment, at }) => this.moving.outside(attachment, at));
     const rates = (shift) =>
       points.map((from, index) => {

@@ -1,4 +1,4 @@
-// Motion by itself: time where motions are prescribed, otherwise a driver.
+// Motion by itself: time where motions are prescribed or freedoms move, otherwise a driver.
 
 import { offerMoves } from "./controls.js";
 
@@ -19,6 +19,15 @@ export class Play {
   offer(page) {
     offerMoves(this.what, page);
     this.button.disabled = this.what.options.length === 0;
+    this.swing.parentElement.hidden = page.is_free;
+    if (page.is_free) {
+      this.swing.checked = false;
+      this.direction = 1;
+      // The time of the simulation takes a second or more.
+      const speeds = [...this.speed.options].map((option) => Number(option.value));
+      const most = Math.min(1, Math.max(page.stop - page.start, speeds[0]));
+      this.speed.value = Math.max(...speeds.filter((speed) => speed <= most));
+    }
   }
 
   toggle() {
@@ -56,9 +65,10 @@ export class Play {
   advance(seconds) {
     const { live } = this;
     if (this.what.value === "time") {
-      const { start, stop } = live.page;
+      const { start, stop, is_free } = live.page;
       let time = live.frame[0] + this.direction * seconds;
-      if (time > stop || time < start) {
+      // Free motion has no end.
+      if (!is_free && (time > stop || time < start)) {
         if (this.swing.checked) {
           this.direction = -this.direction;
           time = Math.min(stop, Math.max(start, time));
