@@ -20,7 +20,8 @@ use crate::drawing::{Scene, Sheet, png};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
-    DriverId, DriverSource, Mechanism, Motion as Prescribed, Source, Unit, Variable as Of, rounded,
+    Driver, DriverId, DriverSource, Mechanism, Motion as Prescribed, Source, Unit, Variable as Of,
+    rounded,
 };
 
 const MAIN: &str = include_str!("documentation.html");
@@ -131,8 +132,9 @@ pub(super) fn documents(
     Ok(documents)
 }
 
-/// Moves a mechanism along its prescribed motions, or over the range of its first driver that is
-/// an angle, or else of its first driver. One of more than [`MOST_MOVED`] bodies stays at rest.
+/// Moves a mechanism by its forces if it has freedoms, along its prescribed motions, or over the range
+/// of its first driver that is an angle, or else of its first driver. One of more than [`MOST_MOVED`]
+/// bodies stays at rest.
 pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Error> {
     let own = Arc::clone(solver.mechanism());
     // A large mechanism is moved less, so that its page takes seconds.
@@ -158,12 +160,17 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
         .clone()
         .find(is_angle)
         .or_else(|| found.clone().next());
-    let (duration, moving) = match first {
+    let is_free = own.drivers.iter().any(Driver::is_free);
+    let (mut duration, mut moving) = match first {
         _ if !is_moved => (
             0.0,
             format!(
                 "At its start: a mechanism of more than {MOST_MOVED} bodies is not moved here."
             ),
+        ),
+        _ if is_free => (
+            simulation.stop - simulation.start,
+            "Free motion from the start, until the stop time.".to_owned(),
         ),
         _ if own.uses_time() => (
             simulation.stop - simulation.start,
@@ -189,7 +196,19 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let mut solver = Solver::new(Arc::clone(&driven))?;
     solver.restore(&home);
     let start = simulation.start;
-    let mut motion = Motion::from(solver, Signals::default(), start)?;
+    let at_start = |solver| Motion::from(solver, Signals::default(), start);
+    let mut motion = at_start(solver)?;
+    if is_moved && is_free {
+        motion = match motion.with_freedoms() {
+            Ok(motion) => motion,
+            Err(error) => {
+                (duration, moving) = (0.0, format!("At its start: {error}."));
+                let mut solver = Solver::new(Arc::clone(&driven))?;
+                solver.restore(&home);
+                at_start(solver)?
+            }
+        };
+    }
     let told = Output::told(&Output::all(&driven));
     let moments = (MOST_PLACED / own.bodies.len().max(1)).clamp(MOMENTS / 10, MOMENTS);
     let step = duration / moments as f64;
