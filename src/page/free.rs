@@ -34,7 +34,7 @@ impl Session {
     /// moves the hand: freedoms follow while time goes on.
     pub fn hold(&mut self, body: BodyId, grip: [f64; 2], hand: [f64; 2]) -> Outcome {
         if !grip.iter().chain(&hand).all(|x| x.is_finite()) {
-            return Outcome::Refused(Obstacle::new("the hand is nowhere"));
+            return Outcome::Refused(Obstacle::new("no freedom moves this body"));
         }
         let is_same = |spring: &Spring| {
             spring.body == body && spring.grip.map(f64::to_bits) == grip.map(f64::to_bits)

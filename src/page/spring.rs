@@ -18,7 +18,8 @@ const FREQUENCY: f64 = 2.0;
 const SAG: f64 = 0.1;
 /// Damping ratio.
 const DAMPING: f64 = 0.7;
-/// Radius of the hand, in sizes of the mechanism: next to a pivot it still turns the body.
+/// Radius of the hand, in sizes of the mechanism: next to a pivot, where a point hardly moves, the
+/// spring is as stiff as at about this distance.
 const HAND: f64 = 0.05;
 
 /// A spring with a damper between a point of a body and the hand. It consists of forces of a
