@@ -47,6 +47,29 @@ fn an_fmu_carries_its_picture_and_its_page() {
 }
 
 #[test]
+fn a_page_shows_free_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let moving = |file: &str| {
+        let path = folder.path().join("free.fmu");
+        biela(&["export", file, "-o", path.to_str().unwrap()]).success();
+        let mut archive = zip::ZipArchive::new(std::fs::File::open(path).unwrap()).unwrap();
+        let mut page = String::new();
+        let mut entry = archive.by_name("documentation/index.html").unwrap();
+        entry.read_to_string(&mut page).unwrap();
+        page
+    };
+    let page = moving("mechanisms/swinging_tip.toml");
+    assert!(page.contains("Free motion from the start, until the stop time."));
+    // Without inertia it stays, and the page tells why.
+    let massless = [(
+        "inertia = \"mass*length^2/12\"",
+        "center = [\"-length/2\", 0]",
+    )];
+    let page = moving(&altered(folder.path(), "pendulum_free", &massless));
+    assert!(page.contains("At its start: freedom `swing` cannot move by forces"));
+}
+
+#[test]
 fn the_page_of_a_large_mechanism_shows_it_at_its_start() {
     let folder = tempfile::tempdir().unwrap();
     let page_of = |welded: usize| {
