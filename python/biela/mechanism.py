@@ -183,14 +183,16 @@ class Mechanism:
         variables: Sequence[str] | None = None,
         gradient: Sequence[str] = (),
         stop: str = "raise",
+        inputs: Drive | None = None,
     ) -> Result:
         """Moves the mechanism through the times `t` [s] and returns its motion.
 
         Without `t` the times are those of the file, or there is no time if `drive` has arrays with
         rates or single poses are wanted. Each driver moves as `drive` says; the others follow the
         prescribed motions of the file, or stay at their start values; freedoms move by the forces.
-        Samples without rates are differentiated. The mechanism starts in the assembly mode of its file and stays on the
-        continuous motion.
+        Samples without rates are differentiated. The mechanism starts in the assembly mode of its
+        file and stays on the continuous motion. `inputs` are further entries of `drive`, such as
+        `{"motor.effort": "2*sin(t)"}`.
 
         `variables` narrows the result to these variables, or to all of a body, marker, driver or
         measure. `gradient` names parameters by which the variables are differentiated, exactly, at
@@ -205,7 +207,7 @@ class Mechanism:
         """
         if stop not in ("raise", "keep"):
             raise UsageError(f"stop is {stop!r}; expected 'raise' or 'keep'")
-        motions = self._motions(t, drive)
+        motions = self._motions(t, _joined(drive, inputs))
         names, units, indices = self._chosen(variables)
         by = [gradient] if isinstance(gradient, str) else list(gradient)
         raw = self._inner.run(motions, _given(parameters), indices, by)
@@ -231,6 +233,7 @@ class Mechanism:
         drive: Drive | None = None,
         variables: Sequence[str] | None = None,
         progress: bool = False,
+        inputs: Drive | None = None,
     ) -> Sweep:
         """Runs a variant of the mechanism per entry of the arrays of `parameters`, on all cores.
 
@@ -250,7 +253,7 @@ class Mechanism:
         >>> sweep.ok
         array([ True,  True, False])
         """
-        motions = self._motions(t, drive)
+        motions = self._motions(t, _joined(drive, inputs))
         names, units, indices = self._chosen(variables)
         if not names:
             raise UsageError("variables: no variable is named")
@@ -521,6 +524,14 @@ class Mechanism:
         if missing == 2:
             return [velocity, acceleration]
         return [differentiate(times, given[1])[0]]
+
+
+def _joined(drive: Drive | None, inputs: Drive | None) -> Drive:
+    """Returns the entries of both."""
+    twice = set(drive or ()) & set(inputs or ())
+    if twice:
+        raise UsageError(f"inputs: `{min(twice)}` is in `drive` too")
+    return {**(drive or {}), **(inputs or {})}
 
 
 def _given(parameters: Parameters | None) -> list[tuple[str, float | str]]:

@@ -195,6 +195,19 @@ def test_threads_run_at_the_same_time(four_bar):
     assert ticks >= 3
 
 
+def test_inputs_are_entries_of_drive(mechanism):
+    crank = mechanism("slider_crank_motor")
+    t = np.linspace(0, 0.3, 4)
+    torque = {"motor.effort": "1 + t"}
+    driven = crank.run(t=t, drive=torque)
+    assert_array_equal(crank.run(t=t, inputs=torque).to_numpy(), driven.to_numpy())
+    sampled = crank.run(t=t, inputs={"motor.effort": 1 + t})
+    assert_allclose(sampled["crank_angle.position"], driven["crank_angle.position"], rtol=1e-9)
+    assert abs(driven["crank_angle.position"][-1] - crank.run(t=t)["crank_angle.position"][-1]) > 0.1
+    with pytest.raises(biela.UsageError, match="`motor.effort` is in `drive` too"):
+        crank.run(t=t, drive=torque, inputs=torque)
+
+
 def test_the_start_of_a_freedom_is_set(mechanism):
     pendulum = mechanism("pendulum_free")
     t = [0.0, 0.1, 0.5]
