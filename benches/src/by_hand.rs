@@ -41,6 +41,15 @@ unsafe extern "C" {
         out: &mut [f64; OUTPUTS],
         forces: &mut [f64; FORCES],
     );
+    #[link_name = "four_bar_acceleration"]
+    safe fn c_four_bar_acceleration(
+        lengths: &[f64; 4],
+        masses: &[[f64; 4]; 3],
+        angle: f64,
+        velocity: f64,
+    ) -> f64;
+    #[link_name = "pendulum_acceleration"]
+    safe fn c_pendulum_acceleration(angle: f64) -> f64;
     safe fn slider_crank_solve(
         lengths: &[f64; 3],
         angle: f64,
@@ -162,6 +171,18 @@ impl Stepper for FourBarForces {
 #[must_use]
 pub fn four_bar_masses() -> [[f64; 4]; 3] {
     FOUR_BAR_MASSES
+}
+
+/// The acceleration of that four-bar's crank where nothing drives it.
+#[must_use]
+pub fn four_bar_acceleration(angle: f64, velocity: f64) -> f64 {
+    c_four_bar_acceleration(&FOUR_BAR, &FOUR_BAR_MASSES, angle, velocity)
+}
+
+/// The acceleration of a pendulum of 1 m with its mass at the end, at an angle from the level.
+#[must_use]
+pub fn pendulum_acceleration(angle: f64) -> f64 {
+    c_pendulum_acceleration(angle)
 }
 
 /// The slider–crank of `mechanisms/slider_crank.toml`.

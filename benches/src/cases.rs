@@ -10,6 +10,7 @@ use crate::by_hand::{
 use crate::chain::{Chain, Kind};
 use crate::clock::timed;
 use crate::cycle::{Cycle, Order};
+use crate::free::{self, Free};
 use crate::generated::{Ground, chain, scissor_lift};
 use crate::motion::{Loaded, Moving, Stepper, Sweep, set_up, with_masses};
 use crate::shipped;
@@ -102,6 +103,10 @@ impl Case {
             }
             "chain" => repeat(Moving::new(&chain(size, ground)), turn),
             "lift" => repeat(Moving::new(&scissor_lift(size)), [Sweep::lift(size, sweep)]),
+            "free_pendulum" => move_on(Free::pendulum()),
+            "free_four_bar" => move_on(Free::four_bar()),
+            "c_free_pendulum" => move_on(free::ByHand::pendulum()),
+            "c_free_four_bar" => move_on(free::ByHand::four_bar()),
             "set_up_chain" => set_ups(chain(size, ground)),
             "set_up_lift" => set_ups(scissor_lift(size)),
             "page_four_bar" => page(shipped!("four_bar"), turn),
@@ -143,6 +148,11 @@ fn repeat<const DRIVERS: usize>(
         };
         timed(run).1
     })
+}
+
+/// Lets a mechanism move by its forces.
+fn move_on(mut motion: impl free::Motion + 'static) -> Run {
+    Box::new(move |steps| timed(|| (0..steps).for_each(|_| motion.step())).1)
 }
 
 /// Moves the first driver as the hand does on a page, with all numbers of its picture.

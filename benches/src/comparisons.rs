@@ -97,6 +97,15 @@ pub fn comparisons() -> Vec<Comparison> {
         "fmu".to_owned(),
         1,
     );
+    for (what, name) in [("pendulum", "pendulum"), ("four-bar", "four_bar")] {
+        add(
+            format!("{what} that moves freely, 0.01 s"),
+            "4",
+            format!("free_{name}"),
+            format!("c_free_{name}"),
+            1,
+        );
+    }
     for loops in sizes::chain() {
         for (also, mark, yardstick) in [
             ("each loop", "1.75", "c_chain"),

@@ -5,6 +5,7 @@
 //! | [`motion`] | the same motion for both sides; a mechanism that biela moves |
 //! | [`by_hand`] | single mechanisms in C |
 //! | [`chain`] | chains of loops in C |
+//! | [`free`] | free motion, by biela and with accelerations in C |
 //! | [`cycle`] | FMUs in a host in C |
 //! | [`clock`] | the time that this thread has run |
 //! | [`cases`] | what can be measured, by name |
@@ -21,6 +22,7 @@ pub mod chain;
 pub mod clock;
 pub mod comparisons;
 pub mod cycle;
+pub mod free;
 pub mod instructions;
 pub mod motion;
 pub mod sizes;

@@ -11,6 +11,7 @@ use yardstick::by_hand::{
 use yardstick::chain::{Chain, Kind};
 use yardstick::comparisons::{counted_cases, timed_cases};
 use yardstick::cycle::{Cycle, Order};
+use yardstick::free::{self, Free, Motion};
 use yardstick::generated::{BAR, Ground, chain, scissor_lift};
 use yardstick::motion::{Loaded, Moving, Stepper, Sweep, by_order, with_masses};
 use yardstick::{shipped, sizes};
@@ -39,6 +40,24 @@ fn assert_within(limits: [f64; 3], found: &[Vec<f64>; 3], truth: &[Vec<f64>; 3],
 #[track_caller]
 fn assert_close(found: &[Vec<f64>; 3], truth: &[Vec<f64>; 3], what: &str) {
     assert_within(LIMITS, found, truth, what);
+}
+
+/// The same steps and evaluations, over ten seconds.
+#[test]
+fn free_motion_is_the_same() {
+    let same = |mut biela: Free, mut by_hand: free::ByHand, what: &str| {
+        for step in 0..1_000 {
+            biela.step();
+            by_hand.step();
+            for (found, expected) in biela.state().into_iter().zip(by_hand.state()) {
+                // Rounding in some thousand steps, which the swing multiplies by some hundred.
+                let off = (found - expected).abs() / (1.0 + expected.abs());
+                assert!(off < 1e-10, "{what}, {step}: {found} and {expected}");
+            }
+        }
+    };
+    same(Free::pendulum(), free::ByHand::pendulum(), "pendulum");
+    same(Free::four_bar(), free::ByHand::four_bar(), "four-bar");
 }
 
 /// Moves biela and a yardstick along turns in steps of all sizes.

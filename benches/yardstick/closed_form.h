@@ -36,6 +36,13 @@ void four_bar_forces(const struct four_bar *lengths, const struct masses masses[
                      double angle, double velocity, double acceleration, double out[OUTPUTS],
                      double forces[FORCES]);
 
+/* The acceleration of the crank that nothing drives, under gravity along -y. */
+double four_bar_acceleration(const struct four_bar *lengths, const struct masses masses[BODIES],
+                             double angle, double velocity);
+
+/* The acceleration of a pendulum of 1 m with its mass at the end, at an angle from the level. */
+double pendulum_acceleration(double angle);
+
 /* Lengths of a slider-crank [m]: crank and rod between the pins, and the height of the slider's
  * pin above the crank's pivot. */
 struct slider_crank {

@@ -54,11 +54,11 @@ static struct motion move(const struct four_bar *lengths, double angle, double v
     out[3] = 0.0, out[4] = 0.0, out[5] = velocity;
     out[6] = 0.0, out[7] = 0.0, out[8] = acceleration;
 
-    out[9] = ax, out[10] = ay, out[11] = atan2(by, bx);
+    out[9] = ax, out[10] = ay;
     out[12] = avx, out[13] = avy, out[14] = w1;
     out[15] = aax, out[16] = aay, out[17] = (rx * cx + ry * cy) * cross;
 
-    out[18] = lengths->base, out[19] = 0.0, out[20] = atan2(cy, cx);
+    out[18] = lengths->base, out[19] = 0.0;
     out[21] = 0.0, out[22] = 0.0, out[23] = w2;
     out[24] = 0.0, out[25] = 0.0, out[26] = (rx * bx + ry * by) * cross;
     return (struct motion){
@@ -66,10 +66,19 @@ static struct motion move(const struct four_bar *lengths, double angle, double v
     };
 }
 
+/* The motion with the angles of coupler and rocker. */
+static struct motion solve(const struct four_bar *lengths, double angle, double velocity,
+                           double acceleration, double out[OUTPUTS])
+{
+    const struct motion at = move(lengths, angle, velocity, acceleration, out);
+    out[11] = atan2(at.by, at.bx), out[20] = atan2(at.cy, at.cx);
+    return at;
+}
+
 void four_bar_solve(const struct four_bar *lengths, double angle, double velocity,
                     double acceleration, double out[OUTPUTS])
 {
-    move(lengths, angle, velocity, acceleration, out);
+    solve(lengths, angle, velocity, acceleration, out);
 }
 
 /* A body's centre of mass from its origin, and the force and the moment about the origin that its
@@ -96,11 +105,17 @@ static struct demand demand(const struct masses *body, double cosine, double sin
     };
 }
 
-void four_bar_forces(const struct four_bar *lengths, const struct masses masses[BODIES],
-                     double angle, double velocity, double acceleration, double out[OUTPUTS],
-                     double forces[FORCES])
+/* What bodies and pins exert on the crank's driver. */
+struct load {
+    struct demand d0, d1, d2;
+    double fx, fy, pin_x, pin_y; /* of B on the coupler, of A on it */
+    double effort, inertia;
+};
+
+static inline struct load load(const struct four_bar *lengths,
+                               const struct masses masses[BODIES], struct motion at,
+                               const double out[OUTPUTS])
 {
-    const struct motion at = move(lengths, angle, velocity, acceleration, out);
     const double *crank = out, *coupler = out + PER_BODY, *rocker = out + 2 * PER_BODY;
     const double ax = coupler[0], ay = coupler[1];
     const double b = 1.0 / lengths->coupler, c = 1.0 / lengths->rocker;
@@ -123,13 +138,40 @@ void four_bar_forces(const struct four_bar *lengths, const struct masses masses[
         masses[1].inertia * k1 * k1 + masses[1].mass * (vx * vx + vy * vy) +
         (masses[2].inertia + masses[2].mass * (d2.x * d2.x + d2.y * d2.y)) * k2 * k2;
 
-    forces[0] = effort, forces[1] = effort * velocity;
-    forces[2] = inertia, forces[3] = effort - inertia * acceleration;
-    forces[4] = d0.fx + pin_x, forces[5] = d0.fy + pin_y;
-    forces[6] = pin_x, forces[7] = pin_y;
-    forces[8] = fx, forces[9] = fy;
-    forces[10] = d2.fx - fx, forces[11] = d2.fy - fy;
-    forces[12] = 0.5 * inertia * velocity * velocity;
-    forces[13] = 9.81 * (masses[0].mass * d0.y + masses[1].mass * (ay + d1.y) +
-                         masses[2].mass * d2.y);
+    return (struct load){
+        .d0 = d0, .d1 = d1, .d2 = d2, .fx = fx, .fy = fy, .pin_x = pin_x, .pin_y = pin_y,
+        .effort = effort, .inertia = inertia,
+    };
+}
+
+void four_bar_forces(const struct four_bar *lengths, const struct masses masses[BODIES],
+                     double angle, double velocity, double acceleration, double out[OUTPUTS],
+                     double forces[FORCES])
+{
+    const struct motion at = solve(lengths, angle, velocity, acceleration, out);
+    const struct load l = load(lengths, masses, at, out);
+
+    forces[0] = l.effort, forces[1] = l.effort * velocity;
+    forces[2] = l.inertia, forces[3] = l.effort - l.inertia * acceleration;
+    forces[4] = l.d0.fx + l.pin_x, forces[5] = l.d0.fy + l.pin_y;
+    forces[6] = l.pin_x, forces[7] = l.pin_y;
+    forces[8] = l.fx, forces[9] = l.fy;
+    forces[10] = l.d2.fx - l.fx, forces[11] = l.d2.fy - l.fy;
+    forces[12] = 0.5 * l.inertia * velocity * velocity;
+    forces[13] = 9.81 * (masses[0].mass * l.d0.y + masses[1].mass * (out[10] + l.d1.y) +
+                         masses[2].mass * l.d2.y);
+}
+
+double four_bar_acceleration(const struct four_bar *lengths, const struct masses masses[BODIES],
+                             double angle, double velocity)
+{
+    double out[OUTPUTS];
+    const struct motion at = move(lengths, angle, velocity, 0.0, out);
+    const struct load l = load(lengths, masses, at, out);
+    return -l.effort / l.inertia;
+}
+
+double pendulum_acceleration(double angle)
+{
+    return -9.81 * cos(angle);
 }

@@ -1,9 +1,7 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{
-    DriverId, DriverSource, Joint, JointKind, MarkerId, Mechanism, Order, Unit,
-};
+use super::{DriverId, DriverSource, Joint, JointKind, MarkerId, Mechanism, Order, Unit};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

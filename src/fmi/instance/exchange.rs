@@ -5,7 +5,7 @@ use crate::fmi::model::Model;
 use crate::fmi::state::{Call, Interface, State, Version};
 use crate::mechanism::show_time;
 
-/// What a model answers at an event.
+/// A model's answer at an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EventResult {
     /// The simulation must end, since the point does not exist.
@@ -14,7 +14,7 @@ pub struct EventResult {
     pub states_changed: bool,
 }
 
-/// What a model answers at the end of an integrator's step.
+/// A model's answer at the end of an integrator's step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CompletedStep {
     /// An event follows.

@@ -1,16 +1,18 @@
-//! What an export decides by numbers. Another processor might decide otherwise, and value references
-//! would shift: the FMU carries the decisions.
+//! Decisions of an export by numbers. Another processor might decide otherwise, and value references
+//! would shift: the FMU carries them.
 
 use std::fs;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::resource::RESOURCE;
 use crate::dynamics::keeps_coordinates;
 use crate::fmi::error::Failure;
 use crate::kinematics::{Origin, omitted_reactions};
 use crate::mechanism::{Driver, Mechanism};
+
+/// Name of the mechanism's file in `resources/`.
+pub const RESOURCE: &str = "mechanism.toml";
 
 /// Name of the file in `resources/` that lists the joints and constraints whose reactions are no
 /// variables, one name per line.

@@ -43,9 +43,10 @@ mod variables;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
+pub use decisions::RESOURCE;
 pub use description::describe;
 pub use guid::guid;
-pub use resource::{RESOURCE, write_fmu};
+pub use resource::write_fmu;
 pub use state::MechanismState;
 pub use variables::{Quantity, TABLE_VERSION, variables};
 

@@ -4,15 +4,12 @@ use std::io::{self, Seek, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-use super::decisions::Decisions;
+use super::decisions::{Decisions, RESOURCE};
 use super::variables::Quantity;
 use crate::fmi::error::Failure;
 use crate::fmi::model_description::{Document, ModelDescription};
 use crate::fmi::package::{self, RuntimeLibrary};
 use crate::mechanism::{Mechanism, Severity, Source};
-
-/// Name of the mechanism's file in `resources/`.
-pub const RESOURCE: &str = "mechanism.toml";
 
 /// Reads the mechanism from the folder of resources, and the decisions of its export.
 pub(super) fn read(resources: &Path) -> Result<(Arc<Mechanism>, Decisions), Failure> {
