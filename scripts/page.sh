@@ -38,6 +38,8 @@ fi
 built_from=$(sources)
 # Paths of this machine would differ from machine to machine.
 flags="--remap-path-prefix=$PWD=. --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
+# With half the usual threshold for inlining the solver is an eighth smaller, and not slower.
+flags="$flags -Cllvm-args=-inline-threshold=100"
 arguments=(build --locked --package biela-page --profile page --target "$TARGET")
 if has_target rustc; then
     RUSTFLAGS="$flags" cargo "${arguments[@]}"
