@@ -4,6 +4,7 @@ use arbitrary::{Arbitrary, Unstructured};
 use biela::fmi::{
     Call, Causality, CoSimulation, Error, Failure, Interface, State, Status, StepProgress, Version,
 };
+use biela::mechanism::Driver;
 
 use crate::{FmuState, Instance, instance, reals, shipped};
 
@@ -35,6 +36,9 @@ enum Request {
     CompletedIntegratorStep,
     SetTime(Value),
     GetContinuousStates(u8),
+    SetContinuousStates(Vec<Value>),
+    GetDerivatives(u8),
+    GetNominals(u8),
     GetAll,
     GetSome(Vec<u8>),
     GetRealOutputDerivatives(u8, i8),
@@ -90,7 +94,11 @@ pub fn run(data: &[u8]) {
 
 fn attempt(data: &mut Unstructured<'_>) -> arbitrary::Result<()> {
     let mechanism = shipped(data.arbitrary()?);
-    let interface = *data.choose(&Interface::ALL)?;
+    let mut interface = *data.choose(&Interface::ALL)?;
+    if mechanism.drivers.iter().any(Driver::is_free) {
+        // A long step of co-simulation would integrate for a long time.
+        interface = Interface::ModelExchange;
+    }
     let version = *data.choose(&Version::ALL)?;
     let mut instance = instance(&mechanism, version, interface).expect("it is shipped");
     if version == Version::Fmi3 && interface == Interface::CoSimulation {
@@ -277,6 +285,25 @@ fn make(
             instance
                 .continuous_states(usize::from(*count))
                 .map(|states| states.for_each(drop)),
+        ),
+        Request::SetContinuousStates(values) => {
+            let values: Vec<f64> = values.iter().map(|value| value.get()).collect();
+            (
+                Call::SetContinuousStates,
+                instance.set_continuous_states(&values),
+            )
+        }
+        Request::GetDerivatives(count) => (
+            Call::GetDerivatives,
+            instance
+                .derivatives_of_states(usize::from(*count))
+                .map(|rates| assert_finite(&rates.collect::<Vec<_>>())),
+        ),
+        Request::GetNominals(count) => (
+            Call::GetNominalsOfContinuousStates,
+            instance
+                .nominals(usize::from(*count))
+                .map(|nominals| assert_finite(&nominals.collect::<Vec<_>>())),
         ),
         Request::GetAll => {
             let reals = reals(instance);

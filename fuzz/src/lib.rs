@@ -48,6 +48,9 @@ fn shipped(index: u8) -> Arc<Mechanism> {
         include_str!("../../mechanisms/cam_roller_arm.toml"),
         include_str!("../../mechanisms/rack_drive.toml"),
         include_str!("../../mechanisms/engine.toml"),
+        include_str!("../../mechanisms/swinging_tip.toml"),
+        include_str!("../../mechanisms/slider_crank_motor.toml"),
+        include_str!("../../tests/fmpy/mechanisms/triple_rocker.toml"),
     ];
     let text = texts[usize::from(index) % texts.len()];
     let (mechanism, _) =
