@@ -11,6 +11,9 @@ same start, from Lagrange's equation of the slider-crank written by hand, agrees
 Then the motor is an FMU too, written in C, and both are coupled by an SSP file, which FMPy and Ecos
 simulate: the difference shrinks with the step.
 
+The crank is driven here, and the motor integrates the motion of both. In `system/press.py` the
+crank is a freedom, which the motor's torque moves.
+
     python dc_motor.py
 """
 

@@ -99,6 +99,23 @@ def test_crane(example, tmp_path):
     assert (tmp_path / "crane.png").stat().st_size > 10_000
 
 
+def test_press(example, tmp_path):
+    printed = example("system/press.py")
+    exchanged = float(re.search(r"off by (\S+) at most", printed)[1])
+    # Rounding of 8000 Runge-Kutta steps of a stable motion.
+    assert exchanged < 1e-12
+    rows = re.findall(r"^(\w+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+)$", printed, re.MULTILINE)
+    off = {(host, step): np.array(rest, dtype=float) for host, step, *rest in rows}
+    for host in ("FMPy", "Ecos"):
+        coarse, middle, fine = (off[host, step] for step in ("2.0", "1.0", "0.5"))
+        # Inputs held over a step: the next term is a part of the step's size.
+        for ratio in (coarse / middle, middle / fine):
+            assert np.all((ratio > 1.8) & (ratio < 2.2)), printed
+        # The controller keeps 10 rad/s.
+        assert fine[0] < 0.002 * 10, printed
+    assert (tmp_path / "press.png").stat().st_size > 10_000
+
+
 def test_requirements_are_those_of_the_lock():
     """The pins in examples/requirements.txt are versions that the tests run with."""
     lock = (ROOT / "tests" / "fmpy" / "requirements.txt").read_text(encoding="utf-8")
