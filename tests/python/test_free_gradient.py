@@ -78,7 +78,9 @@ def test_gradients_are_those_of_differences(name):
         and mechanism.drivers[variable.split(".")[0]].start is not None
     }
     parameters = {p.name: p.value for p in mechanism.parameters.values() if not p.derived}
-    values = parameters | starts
+    # The first and the last of them: a length and a mass, a spring or a friction.
+    chosen = [*parameters][:1] + [*parameters][-1:]
+    values = {name: parameters[name] for name in chosen} | starts
     drive = {}
     if any(variable == "motor.effort" for variable in mechanism.variables):
         drive["motor.effort"] = "0.5 + 0.3*sin(5*t)"
