@@ -7,7 +7,7 @@ use super::error::Error;
 use super::input::Input;
 use super::signals::Signals;
 use crate::dynamics::{self, FreeMotion, StateSpace};
-use crate::kinematics::{Output, Solution, Solver};
+use crate::kinematics::{Output, Pose, Solution, Solver};
 use crate::mechanism::CoordinateKind;
 
 /// Lets the freedoms of a mechanism, if it has some, move by the forces from the solver's pose on.
@@ -104,6 +104,14 @@ impl AtRest {
         let part = self.signals.part(self.solver.pose().time, &held);
         let balanced = (self.free).balance(&mut self.solver, &mut self.solution, &part);
         balanced.map_err(|error| stopped(&self.file, &error))
+    }
+
+    /// Finds the stable equilibria downhill from places all over the range of the freedoms.
+    pub(super) fn balances(&mut self) -> Result<Vec<Pose>, Error> {
+        let held = self.solver.pose().drivers.clone();
+        let part = self.signals.part(self.solver.pose().time, &held);
+        let balances = (self.free).balances(&mut self.solver, &mut self.solution, &part);
+        balances.map_err(|error| stopped(&self.file, &error))
     }
 
     /// Linearizes the motion at the pose.

@@ -1,11 +1,13 @@
 //! Linearisation at a pose, and static equilibrium.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::error::Error;
 use super::given::Given;
 use super::motion::FreeMotion;
-use crate::kinematics::{Curve, Direction, Output, OutputSource, Path, Solution, Solver};
+use crate::kinematics::{Curve, Direction, Output, OutputSource, Path, Pose, Solution, Solver};
 use crate::mechanism::{DriverId, Mechanism, Order};
 
 /// The linear equations of small motions about a pose: δẋ = A δx + B δu, δy = C δx + D δu.
@@ -182,6 +184,59 @@ impl FreeMotion {
             self.go_by(solver, &(step * part))?;
         }
         Err(Error::NoEquilibrium)
+    }
+
+    /// Finds the stable equilibria to which the mechanism comes down, with all inputs held, from places
+    /// all over the range of its freedoms that it reaches from the solver's pose: around each angle,
+    /// and as far along each length. There may be others.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoEquilibrium`] if none is found.
+    pub fn balances(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        given: &impl Given,
+    ) -> Result<Vec<Pose>, Error> {
+        /// Places along one freedom: a maximum of the energy, or a dead point, stands between two
+        /// equilibria, and three of each in a turn are many.
+        const MOST_PLACES: usize = 6;
+        /// Places in all.
+        const MOST_STARTS: usize = 6 * 6 * 6;
+        let home = solver.pose().clone();
+        let scales = self.scales();
+        let freedoms = u32::try_from(scales.len()).unwrap_or(u32::MAX);
+        let fits = |places: &usize| {
+            let starts = places.checked_pow(freedoms);
+            starts.is_some_and(|starts| starts <= MOST_STARTS)
+        };
+        let places = (2..=MOST_PLACES).rev().find(fits).unwrap_or(1);
+        let starts = places.checked_pow(freedoms).unwrap_or(1);
+        let mut found: Vec<Pose> = Vec::new();
+        for start in 0..starts {
+            solver.restore(&home);
+            let mut rest = start;
+            let changes = scales.iter().map(|scale| {
+                let place = rest % places;
+                rest /= places;
+                // From the middle alternately to both sides.
+                let steps = place.div_ceil(2) as f64 * if place % 2 == 0 { 1.0 } else { -1.0 };
+                TAU / places as f64 * scale * steps
+            });
+            let changes = DVector::from_iterator(scales.len(), changes);
+            // Where the way is blocked the place is in front of the obstacle.
+            let _ = self.go_by(solver, &changes);
+            if self.balance(solver, solution, given).is_ok()
+                && !found.iter().any(|pose| solver.is_near(pose))
+            {
+                found.push(solver.pose().clone());
+            }
+        }
+        match found.is_empty() {
+            true => Err(Error::NoEquilibrium),
+            false => Ok(found),
+        }
     }
 
     /// Moves the mechanism by changes of the freedoms' values.

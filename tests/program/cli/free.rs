@@ -55,7 +55,7 @@ fn a_run_sets_the_start_of_a_freedom() {
     assert!(told.contains("`swing.velocity`"), "{told}");
     let endless = run(&text, &["--set", "swing.velocity=1/0"]).failure();
     let told = String::from_utf8_lossy(&endless.get_output().stderr).into_owned();
-    assert!(told.contains("not finite"), "{told}");
+    assert!(told.contains("not a finite number"), "{told}");
 }
 
 /// Also from the very top, where the rod is in balance but not stable.
@@ -72,6 +72,37 @@ fn a_rod_comes_down_to_rest() {
         &["balance", "--drive", "motor.effort = 2*9.81*0.5*0.5"],
     );
     assert!(told.contains("= -60.000000 deg"), "{told}");
+}
+
+/// A spring that is free at the top holds the rod at 60 degrees to either side, with k = m g a sin(60°)
+/// over 60°.
+#[test]
+fn both_sides_of_a_top_are_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rod.toml");
+    let k = 2.0 * 9.81 * 0.5 * 60.0_f64.to_radians().sin() / 60.0_f64.to_radians();
+    let spring = format!(
+        "forces.spring = {{ coordinate = \"angle\", markers = [\"ground.O\", \"rod.O\"], \
+         stiffness = {k}, free = \"90*deg\" }}\n"
+    );
+    let text = ROD.replace("START", "100") + &spring;
+    std::fs::write(&file, text).expect("it can be written");
+    let file = file.to_str().expect("UTF-8");
+    let one = stdout(&biela(&["balance", file]).success());
+    assert!(
+        one.starts_with("balanced at\n  swing = 150.000000 deg"),
+        "{one}"
+    );
+    let all = stdout(&biela(&["balance", file, "--all"]).success());
+    assert!(
+        all.contains("1 of 2: balanced at\n  swing = 150.000000 deg"),
+        "{all}"
+    );
+    assert!(
+        all.contains("2 of 2: balanced at\n  swing = 30.000000 deg"),
+        "{all}"
+    );
+    assert!(!all.contains("3 of"), "{all}");
 }
 
 /// Hanging it swings with the square of its frequency m g a / J; a torque accelerates it by 1 / J.
