@@ -52,31 +52,26 @@ def free_motion(
     count = len(start)
 
     def accelerations(t: float, z: np.ndarray, rates: np.ndarray) -> np.ndarray:
-        zero = np.zeros(1)
+        # One evaluation: the motion, then each coordinate alone. Adding zeros spreads constants.
+        columns = count + 1
+        changes = np.column_stack([rates, np.eye(count)])
+        zero = np.zeros(columns)
+        along = [
+            Taylor(np.full(columns, value), change, zero)
+            for value, change in zip(z, changes, strict=True)
+        ]
+        now = Taylor(np.full(columns, t), np.eye(columns)[0], zero)
 
-        def evaluate(change: np.ndarray, passing: float):
-            along = [
-                Taylor(np.array([value]), np.array([rate]), zero)
-                for value, rate in zip(z, change, strict=True)
-            ]
-            now = Taylor(np.array([t]), np.array([passing]), zero)
-            return masses(along, now), loads(along, now)
-
-        moving, forces = evaluate(rates, 1.0)
         matrix, right = np.zeros((count, count)), np.zeros(count)
-        units = [evaluate(unit, 0.0) for unit in np.eye(count)]
-        for row, (parts, coordinates) in enumerate(units):
-            for (coordinate, _), (_, force) in zip(coordinates, forces, strict=True):
-                right[row] += scalar(coordinate.first) * scalar(force)
-            for part, body in zip(parts, moving, strict=True):
-                lacking = gravity - scalar(body.centre.second)
-                right[row] += body.mass * (np.conj(scalar(part.centre.first)) * lacking).real
-                right[row] -= body.inertia * scalar(part.phi.first) * scalar(body.phi.second)
-            for column, (others, _) in enumerate(units):
-                for part, other in zip(parts, others, strict=True):
-                    product = np.conj(scalar(part.centre.first)) * scalar(other.centre.first)
-                    turning = scalar(part.phi.first) * scalar(other.phi.first)
-                    matrix[row, column] += part.mass * product.real + part.inertia * turning
+        for body in masses(along, now):
+            moving, turning = (body.centre.first + zero)[1:], (body.phi.first + zero)[1:]
+            lacking = gravity - (body.centre.second + zero)[0]
+            right += body.mass * (moving.conj() * lacking).real
+            right -= body.inertia * turning * (body.phi.second + zero)[0]
+            matrix += body.mass * np.outer(moving.conj(), moving).real
+            matrix += body.inertia * np.outer(turning, turning)
+        for coordinate, force in loads(along, now):
+            right += (coordinate.first + zero)[1:] * (force + zero)[0]
         return np.linalg.solve(matrix, right)
 
     def rates_of(t: float, x: np.ndarray) -> np.ndarray:
@@ -107,8 +102,3 @@ def free_motion(
         return [Taylor(*orders) for orders in zip(z, rates, second, strict=True)]
 
     return motion
-
-
-def scalar(value):
-    """The only number of an array, or the number."""
-    return np.asarray(value).reshape(-1)[0]
