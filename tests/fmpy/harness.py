@@ -48,6 +48,12 @@ def state_names(description) -> list[str]:
     return [unknown.variable.derivative.name for unknown in description.derivatives]
 
 
+def state_outputs(description) -> list[str]:
+    """Returns the names of the outputs that the continuous states are at first, in their order."""
+    outputs = (v for v in description.modelVariables if v.causality == "output")
+    return [output.name for output in outputs if output.start is not None]
+
+
 def program() -> Path:
     """Path of the `biela` program; a missing one fails the test that asks for it."""
     suffix = ".exe" if os.name == "nt" else ""

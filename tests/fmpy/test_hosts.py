@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import SHIPPED, state_names
+from harness import SHIPPED, state_outputs
 
 STEP = 0.01
 STEPS = 10
@@ -91,7 +91,7 @@ def test_fmuloader_exchanges_the_model(fmu, loaded, expected, name):
     instance = loaded(name, "MODEL_EXCHANGE")
     assert not instance.new_discrete_states().newDiscreteStatesNeeded
     instance.enter_continuous_time_mode()
-    states = state_names(fmu(name).description)
+    states = state_outputs(fmu(name).description)
     starts = [float(fmu(name).variables[state].start) for state in states]
     assert instance.get_continuous_states(len(states)) == starts
     assert instance.get_derivatives(len(states))[::2] == starts[1::2]
@@ -160,7 +160,7 @@ def test_fmuloader_exchanges_the_fmi_3_model(fmu, fmu3, loaded3, expected, name)
     instance.exit_initialization_mode()
     assert not instance.update_discrete_states().discrete_states_need_update
     instance.enter_continuous_time_mode()
-    states = state_names(fmu(name).description)
+    states = state_outputs(fmu(name).description)
     starts = [float(fmu(name).variables[state].start) for state in states]
     assert instance.get_continuous_states(len(states)) == starts
     assert instance.get_continuous_state_derivatives(len(states))[::2] == starts[1::2]

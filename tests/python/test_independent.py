@@ -36,6 +36,10 @@ RATES = {
 OF_FORCES = set("effort power inertia bias fx fy torque kinetic potential".split())
 """Variables of forces, which are no part of the motion."""
 
+NEXT_TO_CHANGE_POINTS = {"four_bar_chain": 4}
+"""Factors on the bounds of motions for mechanisms of which a pose is next to a change point, where
+polynomials give the outputs."""
+
 COMPUTED = {"toggle_press": {"advantage"}}
 """Measures that the files compute from other variables, which are compared."""
 
@@ -141,7 +145,8 @@ def check(mechanism, t, drive, folder=Path()):
         rounding = Rounding(pose, motion, [mechanism.variables[name] for name in pose.names])
         names = np.array([[rate(name, order) for name in pose.names] for order in range(3)])
         found = np.vectorize(lambda name: result[name][row])(names)
-        assert_within(found, motion, rounding.of_motion(), names)
+        factor = NEXT_TO_CHANGE_POINTS.get(mechanism.name, 1)
+        assert_within(found, motion, factor * rounding.of_motion(), names)
         for parameter in free:
             exact = pose.gradient(parameter.name)
             bounds = rounding.of_gradient(exact, parameter.value, parameter.unit)
@@ -157,8 +162,8 @@ def test_motions_and_gradients_of_shipped_mechanisms(any_mechanism):
     assert left == COMPUTED.get(any_mechanism.name, set())
 
 
-def test_computed_measures_are_of_shipped_mechanisms():
-    assert set(COMPUTED) <= {path.stem for path in MECHANISMS}
+def test_exceptions_are_of_shipped_mechanisms():
+    assert set(COMPUTED) | set(NEXT_TO_CHANGE_POINTS) <= {path.stem for path in MECHANISMS}
 
 
 def test_motions_and_gradients_of_other_joints():
