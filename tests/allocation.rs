@@ -174,6 +174,8 @@ fn steps_of_free_motion_allocate_nothing() {
     for name in [
         "pendulum_free",
         "double_pendulum",
+        "engine_free",
+        "five_bar_free",
         "four_bar_free",
         "swinging_tip",
     ] {

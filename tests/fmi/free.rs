@@ -15,9 +15,12 @@ use crate::common::{Instance, folder, instance_of, parse, shipped};
 use crate::differences::{DIFFERENCE, differences};
 
 /// Mechanisms with a force input, if they have one, and with their freedoms.
-const FREE: [(&str, Option<&str>, &[&str]); 7] = [
+const FREE: [(&str, Option<&str>, &[&str]); 10] = [
     ("pendulum_free", None, &["swing"]),
     ("double_pendulum", None, &["shoulder", "elbow"]),
+    ("engine_free", Some("load.effort"), &["crank_angle"]),
+    ("five_bar_free", None, &["left_angle", "right_angle"]),
+    ("four_bar_chain", None, &["post_angle"]),
     ("four_bar_free", Some("motor.effort"), &["crank_angle"]),
     ("slider_crank_motor", Some("motor.effort"), &["crank_angle"]),
     ("swinging_tip", None, &["swing"]),

@@ -56,6 +56,9 @@ def text_of(name):
 FREE = {
     "pendulum_free": 1.0,
     "double_pendulum": 0.6,
+    "engine_free": 0.1,
+    "five_bar_free": 0.4,
+    "four_bar_chain": 0.5,
     "four_bar_free": 0.8,
     "slider_crank_motor": 0.5,
     "swinging_tip": 0.6,

@@ -188,8 +188,10 @@ const TURNING: &str = "andrews.beta andrews_free.beta bonnet_hinge.opening cam_f
     cam_flat_arm.cam_angle cam_knife.cam_angle cam_knife_arm.cam_angle cam_points.cam_angle \
     cam_roller.cam_angle cam_roller_arm.cam_angle cart_pole.lean chebyshev.coupler_angle \
     double_pendulum.shoulder double_pendulum.elbow double_rocker.worm_angle drag_link.crank_angle \
-    elliptic_trammel.bar_angle engine.crank_angle five_bar_robot.left_angle \
-    five_bar_robot.right_angle four_bar.crank_angle four_bar_free.crank_angle \
+    elliptic_trammel.bar_angle engine.crank_angle engine_free.crank_angle \
+    five_bar_free.left_angle five_bar_free.right_angle five_bar_robot.left_angle \
+    five_bar_robot.right_angle four_bar.crank_angle four_bar_chain.post_angle \
+    four_bar_free.crank_angle \
     geared_five_bar.crank_angle hatch.opening jansen_leg.crank_angle parallelogram.crank_angle \
     pendulum.swing_angle pendulum_free.swing planetary_gear.sun_angle rack_drive.crank_angle \
     rolling_wheel.turn scotch_yoke.crank_angle sewing_machine.shaft_angle \

@@ -63,6 +63,7 @@ fn end(mechanism: &Arc<Mechanism>, fed: Fed, until: f64) -> Vec<f64> {
 fn the_motion_is_the_same_elsewhere() {
     for (name, fed, until) in [
         ("double_pendulum", Fed::default(), 2.0),
+        ("five_bar_free", Fed::default(), 2.0),
         ("four_bar_free", torque_input(), 2.0),
         ("cart_pole", torque_input(), 3.0),
         ("swinging_tip", Fed::default(), 3.0),

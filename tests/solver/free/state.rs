@@ -12,6 +12,9 @@ fn a_motion_goes_on_from_its_state_in_another_solver() {
     for (name, fed, until) in [
         ("pendulum_free", Fed::default(), 2.0),
         ("double_pendulum", Fed::default(), 2.0),
+        ("engine_free", torque_input(), 0.5),
+        ("five_bar_free", Fed::default(), 2.0),
+        ("four_bar_chain", Fed::default(), 2.0),
         ("four_bar_free", torque_input(), 1.0),
         ("slider_crank_motor", torque_input(), 1.0),
         ("swinging_tip", Fed::default(), 2.0),
