@@ -195,6 +195,22 @@ def test_threads_run_at_the_same_time(four_bar):
     assert ticks >= 3
 
 
+@pytest.mark.filterwarnings("ignore::biela.MechanismWarning")
+def test_reactions_that_are_no_outputs_stop_nothing(mechanism):
+    """At the change point the forces in the pins grow without bound; the effort does not."""
+    text = mechanism("parallelogram").text
+    mass = "mass = 2\ninertia = 0.01\ncenter = [0.1, 0]"
+    heavy = text.replace("[bodies.coupler]", f"[bodies.coupler]\n{mass}")
+    drive = {"crank_angle": (np.radians([170.0, 180.0, 190.0]), 3.0, 0.0)}
+    with pytest.raises(biela.StoppedError, match="no limit"):
+        biela.loads(heavy).run(drive=drive)
+    without = biela.loads(heavy.replace("[outputs]", "[outputs]\nreactions = []"))
+    result = without.run(drive=drive)
+    # The coupler goes on a circle of 0.1 m without turning: its weight alone has power.
+    expected = 2 * 9.81 * 0.1 * np.cos(np.radians([170.0, 180.0, 190.0]))
+    assert_allclose(result["crank_angle.effort"], expected, rtol=1e-9)
+
+
 def test_inputs_are_entries_of_drive(mechanism):
     crank = mechanism("slider_crank_motor")
     t = np.linspace(0, 0.3, 4)

@@ -81,6 +81,10 @@ impl Solution {
         self.loads = vec![0.0; forces.inputs()];
         self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
+        let outputs = &solver.mechanism().outputs;
+        if outputs.joints.is_empty() && outputs.constraints.is_empty() {
+            self.leave_out_reactions();
+        }
     }
 
     /// Exchanges the forces with those of a solver of the same mechanism in other coordinates.
