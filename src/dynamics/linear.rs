@@ -225,7 +225,7 @@ impl FreeMotion {
                 TAU / places as f64 * scale * steps
             });
             let changes = DVector::from_iterator(scales.len(), changes);
-            // Where the way is blocked the place is in front of the obstacle.
+            // A way that is blocked ends in front of the obstacle.
             let _ = self.go_by(solver, &changes);
             if self.balance(solver, solution, given).is_ok()
                 && !found.iter().any(|pose| solver.is_near(pose))
