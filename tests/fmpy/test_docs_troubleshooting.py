@@ -58,7 +58,6 @@ PARTS = {
     "beyond, …, redundant up to here": "… at t = … s: the mechanism cannot go on, with …",
     "at … of … poses, first at …": "`range`: … has no value …, no forces …",
     "at t [s]": "a heading of the table of `tolerance`",
-    "… of …: balanced at …": "a heading of `balance --all`",
     "about the solver": "cannot be set: it is …",
     "the running program": "cannot read `…`",
     "expected one of …": "told by the parser of options",

@@ -34,16 +34,13 @@ impl Balance {
         let mut at = AtRest::read(&self.file, &self.conditions)?;
         if !self.all {
             at.balance()?;
-            return print(&format!("balanced at\n{}", describe(&at.solver)));
+            return print(&describe(&at.solver));
         }
         let balances = at.balances()?;
         let count = balances.len();
         for (number, pose) in (1..).zip(&balances) {
             at.solver.restore(pose);
-            let description = describe(&at.solver);
-            print(&format!(
-                "{number} of {count}: balanced at\n{description}\n"
-            ))?;
+            print(&format!("{number} of {count}: {}\n", describe(&at.solver)))?;
         }
         Ok(())
     }
@@ -51,7 +48,7 @@ impl Balance {
 
 /// Tells the values of all drivers at a pose, and the pose as estimates.
 fn describe(solver: &Solver) -> String {
-    let mut out = String::new();
+    let mut out = "balanced at\n".to_owned();
     let drivers = &solver.mechanism().drivers;
     for (driver, value) in drivers.iter().zip(&solver.pose().drivers) {
         let value = with_unit(driver.coordinate.kind, *value);
