@@ -111,7 +111,7 @@ fn differing(unknowns: &[u32], one: &[f64], other: &[f64]) -> Vec<u32> {
 fn states(instance: &Instance) -> Vec<u32> {
     (1..)
         .zip(instance.variables())
-        .filter_map(|(vr, variable)| (variable.causality == Causality::State).then_some(vr))
+        .filter_map(|(vr, variable)| (variable.causality.is_state()).then_some(vr))
         .collect()
 }
 
@@ -144,7 +144,7 @@ fn outputs_depend_on_declared_inputs_and_time_only() {
             let by = |known: u32| [vec![known], states(&instance)].concat();
             let [by_inputs, by_time] = [
                 inputs.iter().copied().map(by).collect::<Vec<_>>(),
-                vec![by(description.variables.len() as u32)],
+                vec![by(vr(&instance, "time"))],
             ];
             let point = instance.last_successful_time();
             let before = instance.fmu_state().expect("legal");
