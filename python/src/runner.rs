@@ -1,5 +1,6 @@
 //! A mechanism that moves along the samples and motions of its drivers.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use biela::dynamics::{self, FreeMotion, FreeState, Given, StateSpace};
@@ -318,12 +319,15 @@ impl Runner {
     /// # Errors
     ///
     /// They do not exist, as at a singular position.
-    pub(crate) fn directions(&mut self, own: &[Direction]) -> Result<Vec<Direction>, Failure> {
+    pub(crate) fn directions<'a>(
+        &mut self,
+        own: &'a [Direction],
+    ) -> Result<Cow<'a, [Direction]>, Failure> {
         let Some((free, _)) = &mut self.free else {
-            return Ok(own.to_vec());
+            return Ok(Cow::Borrowed(own));
         };
-        free.varied(&mut self.solver, &mut self.solution)
-            .map_err(stopped)
+        let varied = free.varied(&mut self.solver, &mut self.solution);
+        varied.map(Cow::Owned).map_err(stopped)
     }
 
     /// Adds the derivatives of columns along directions, by direction, then by column.
