@@ -360,6 +360,15 @@ impl Driver {
         }
     }
 
+    /// Returns the velocity of a freedom at the start \[m/s or rad/s\], zero for other drivers.
+    #[must_use]
+    pub fn start_velocity(&self) -> f64 {
+        match self.source {
+            DriverSource::Free { velocity, .. } => velocity,
+            DriverSource::Input { .. } | DriverSource::Motion(_) => 0.0,
+        }
+    }
+
     /// Returns the word for it in messages.
     #[must_use]
     pub fn noun(&self) -> &'static str {

@@ -4,7 +4,6 @@
 //! them; in model exchange it does.
 
 use super::force_input::ForceInput;
-use super::variables::has_local_states;
 use super::{MechanismModel, failed, without_value};
 use crate::dynamics::Given;
 use crate::fmi::error::Failure;
@@ -185,7 +184,7 @@ impl MechanismModel {
     /// Returns whether the states are those of coordinates that are better exchanged at the committed
     /// pose.
     pub(super) fn wants_exchange(&mut self) -> bool {
-        has_local_states(&self.variables)
+        self.has_local_states
             && self.solve_freedoms().is_ok()
             && (self.free.as_mut()).is_some_and(|free| free.wants_exchange(&self.solver))
     }
@@ -197,7 +196,7 @@ impl MechanismModel {
     ///
     /// Freedoms have no acceleration there.
     pub(super) fn exchange_states(&mut self) -> Result<bool, Failure> {
-        if !self.wants_exchange() {
+        if !self.has_local_states || self.solve_freedoms().is_err() {
             return Ok(false);
         }
         self.set_path(self.course.time, 0.0);
@@ -217,6 +216,9 @@ impl MechanismModel {
             forces: &course.force_inputs,
         };
         let exchanged = free.exchange(solver, solution, &given);
+        if matches!(exchanged, Ok(false)) {
+            return Ok(false);
+        }
         let state = course.free.as_mut().expect("made with the motion");
         free.save(state);
         self.note_states();

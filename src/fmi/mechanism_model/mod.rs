@@ -62,8 +62,8 @@ use crate::kinematics::{
     self, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
 };
 use crate::mechanism::{
-    Driver, DriverId, DriverSource, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource,
-    Signal, rounded,
+    Driver, DriverId, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource, Signal,
+    rounded,
 };
 use decisions::Decisions;
 use force_input::ForceInput;
@@ -93,6 +93,8 @@ pub struct MechanismModel {
     path: Path,
     /// The motion of freedoms, if the mechanism has some.
     free: Option<FreeMotion>,
+    /// Whether the states are those of coordinates that are exchanged.
+    has_local_states: bool,
     /// Its state at the file's own values.
     file_free: Option<FreeState>,
     /// The step that is being taken in parts.
@@ -183,8 +185,8 @@ impl Course {
 /// Returns the inputs of a driver at its start; a freedom's are its states.
 fn start_input(driver: &Driver) -> DriverInput {
     let mut input = DriverInput::new(driver.start().unwrap_or(0.0));
-    if let DriverSource::Free { velocity, .. } = driver.source {
-        input.set(Order::Velocity, velocity);
+    if driver.is_free() {
+        input.set(Order::Velocity, driver.start_velocity());
     }
     input
 }
@@ -241,6 +243,7 @@ impl MechanismModel {
             solution,
             file_free: free.as_ref().map(FreeMotion::state),
             free,
+            has_local_states: decisions.has_local_states,
             file_choices,
             path,
             parts: None,

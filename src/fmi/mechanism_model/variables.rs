@@ -240,30 +240,18 @@ impl Table {
         let freedoms = drivers.filter(|(_, driver)| driver.is_free());
         for (count, (index, _)) in freedoms.enumerate() {
             let (value, velocity) = (2 * count + 1, 2 * count + 2);
-            let of = |order| format!("{order} of a coordinate in use for the free motion [SI]");
-            for (name, order, causality) in [
-                (
-                    format!("state[{value}]"),
-                    Order::Position,
-                    Causality::LocalState,
-                ),
-                (
-                    format!("state[{velocity}]"),
-                    Order::Velocity,
-                    Causality::LocalState,
-                ),
-                (
-                    format!("der(state[{velocity}])"),
-                    Order::Acceleration,
-                    Causality::Local,
-                ),
-            ] {
+            let names = [
+                (format!("state[{value}]"), "value"),
+                (format!("state[{velocity}]"), "velocity"),
+                (format!("der(state[{velocity}])"), "acceleration"),
+            ];
+            for (order, (name, of)) in Order::ALL.into_iter().zip(names) {
                 let place = self.list.len();
                 let quantity = Quantity::State(DriverId(index), order);
-                let description = match order {
-                    Order::Position => of("value"),
-                    Order::Velocity => of("velocity"),
-                    Order::Acceleration => of("acceleration"),
+                let description = format!("{of} of a coordinate in use for the free motion [SI]");
+                let causality = match order {
+                    Order::Acceleration => Causality::Local,
+                    _ => Causality::LocalState,
                 };
                 let traits = (causality, Variability::Continuous);
                 self.add(name, description, quantity, traits, Kind::real(None, None));
