@@ -20,8 +20,7 @@ use crate::drawing::{Scene, Sheet, png};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
-    Driver, DriverId, DriverSource, Mechanism, Motion as Prescribed, Source, Unit, Variable as Of,
-    rounded,
+    DriverId, DriverSource, Mechanism, Motion as Prescribed, Source, Unit, Variable as Of, rounded,
 };
 
 const MAIN: &str = include_str!("documentation.html");
@@ -160,7 +159,7 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
         .clone()
         .find(is_angle)
         .or_else(|| found.clone().next());
-    let is_free = own.drivers.iter().any(Driver::is_free);
+    let is_free = own.has_freedoms();
     let (mut duration, mut moving) = match first {
         _ if !is_moved => (
             0.0,

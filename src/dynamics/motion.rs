@@ -11,7 +11,7 @@ use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
 use super::state::FreeState;
 use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
-use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
+use crate::mechanism::{DriverId, Jet};
 
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
 ///
@@ -280,7 +280,9 @@ impl FreeMotion {
     /// Accelerations do not exist there.
     pub fn start(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let mechanism = Arc::clone(solver.mechanism());
-        self.restart(solver, given, |freedom| start_velocity(&mechanism, freedom))
+        self.restart(solver, given, |freedom| {
+            mechanism.drivers[freedom.index()].start_velocity()
+        })
     }
 
     /// Begins at the solver's pose, with these velocities of the freedoms.
@@ -433,14 +435,6 @@ impl FreeMotion {
 fn write_start(freedoms: &[DriverId], pose: &Pose, x: &mut [f64]) {
     for (x, freedom) in x.iter_mut().zip(freedoms) {
         *x = pose.drivers[freedom.index()];
-    }
-}
-
-/// Returns the velocity of a freedom at the start.
-fn start_velocity(mechanism: &Mechanism, freedom: DriverId) -> f64 {
-    match mechanism.drivers[freedom.index()].source {
-        DriverSource::Free { velocity, .. } => velocity,
-        _ => 0.0,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{DriverId, DriverSource, Joint, JointKind, MarkerId, Mechanism, Order, Unit};
+use super::{Driver, DriverId, DriverSource, Joint, JointKind, MarkerId, Mechanism, Order, Unit};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +62,12 @@ impl Joint {
 }
 
 impl Mechanism {
+    /// Returns whether some of the drivers are freedoms.
+    #[must_use]
+    pub fn has_freedoms(&self) -> bool {
+        self.drivers.iter().any(Driver::is_free)
+    }
+
     /// Returns value and velocity of each freedom at the start, which a run may set, by the names of
     /// their variables.
     #[must_use]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::kinematics::{End, RangeSettings, Solver};
-use crate::mechanism::{Driver, DriverId, DriverSource, Jet, Mechanism};
+use crate::mechanism::{DriverId, Jet, Mechanism};
 
 /// Resolution and extent of the ranges of drivers: steps of three degrees, one turn, lengths up to
 /// the size of the mechanism.
@@ -80,14 +80,11 @@ pub(super) fn driver_speeds(mechanism: &Mechanism, ranges: &[Option<DriverRange>
 /// Returns the rates of the drivers at the start: the usual ones; beside freedoms, which move by
 /// themselves, all others rest.
 pub(super) fn start_rates(mechanism: &Mechanism, ranges: &[Option<DriverRange>]) -> Vec<Jet> {
-    if !mechanism.drivers.iter().any(Driver::is_free) {
+    if !mechanism.has_freedoms() {
         return driver_speeds(mechanism, ranges);
     }
-    let velocities = mechanism.drivers.iter().map(|driver| match driver.source {
-        DriverSource::Free { velocity, .. } => velocity,
-        _ => 0.0,
-    });
-    velocities
-        .map(|velocity| Jet::new(0.0, [velocity, 0.0]))
+    let drivers = mechanism.drivers.iter();
+    drivers
+        .map(|driver| Jet::new(0.0, [driver.start_velocity(), 0.0]))
         .collect()
 }

@@ -21,8 +21,8 @@ use crate::cli::suggested_estimates::as_estimates;
 use crate::cli::times::Times;
 use crate::kinematics::{self, Mode, Modes, Origin, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, Driver, DriverId, DriverSource, Jet, Mechanism, Order, Unit,
-    fixed, rounded, shown,
+    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
+    rounded, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -117,7 +117,7 @@ impl Check {
             Message::Warning(excursion).show();
         }
         print(&describe_pose(&mut solver))?;
-        if mechanism.drivers.iter().any(Driver::is_free) {
+        if mechanism.has_freedoms() {
             let at = AtRest::start(input.source.name(), input.assemble()?, Signals::default());
             print(&describe_free_motion(&mut at?)?)?;
         }

@@ -257,7 +257,7 @@ impl Run {
 
 /// Returns a note if nothing moves, with an example of a motion.
 fn note_of_rest(mechanism: &Mechanism, scenario: &Scenario) -> Option<Message> {
-    let moves_freely = scenario.mechanism.drivers.iter().any(Driver::is_free);
+    let moves_freely = scenario.mechanism.has_freedoms();
     if moves_freely || scenario.signals.has_drivers() || scenario.mechanism.uses_time() {
         return None;
     }

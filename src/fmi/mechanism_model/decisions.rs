@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::dynamics::keeps_coordinates;
 use crate::fmi::error::Failure;
 use crate::kinematics::{Origin, omitted_reactions};
-use crate::mechanism::{Driver, Mechanism};
+use crate::mechanism::Mechanism;
 
 /// Name of the mechanism's file in `resources/`.
 pub const RESOURCE: &str = "mechanism.toml";
@@ -34,7 +34,7 @@ pub(super) struct Decisions {
 impl Decisions {
     /// Decides for a mechanism.
     pub(super) fn of(mechanism: &Arc<Mechanism>) -> Self {
-        let is_free = mechanism.drivers.iter().any(Driver::is_free);
+        let is_free = mechanism.has_freedoms();
         Self {
             omitted: omitted_reactions(mechanism),
             has_local_states: is_free && !keeps_coordinates(mechanism),

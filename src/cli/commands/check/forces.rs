@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use crate::kinematics::{Error, ForceQuantity, Output, OutputSource, Solution, Solver};
-use crate::mechanism::{Driver, Expression, Indeterminate, Mechanism, shown};
+use crate::mechanism::{Expression, Indeterminate, Mechanism, shown};
 
 /// Magnitude below which a force of a few newtons is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -68,7 +68,7 @@ impl Forces {
 
     /// Returns the text of the report.
     pub(super) fn describe(&self, mechanism: &Mechanism) -> String {
-        let held = match mechanism.drivers.iter().any(Driver::is_free) {
+        let held = match mechanism.has_freedoms() {
             true => ", with the freedoms held",
             false => "",
         };
