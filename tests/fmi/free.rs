@@ -3,7 +3,7 @@
 
 use biela::dynamics::integrator::{ErrorControl, Failure, Integrator, Method, System};
 use biela::fmi::{
-    Causality, Error, Interface, MechanismModel, Quantity, StepProgress, Variable, Version,
+    Call, Causality, Error, Interface, MechanismModel, Quantity, StepProgress, Variable, Version,
     value_reference,
 };
 use biela::mechanism::Mechanism;
@@ -431,6 +431,32 @@ fn model_exchange_goes_where_co_simulation_goes() {
                 }
             }
         }
+    }
+}
+
+/// In exchanged coordinates all that moves freely depends on the inputs of drivers, too, and so on how
+/// their rates are made.
+#[test]
+fn what_moves_freely_depends_on_the_rates_of_drivers() {
+    let path = folder("mechanisms").join("five_bar_free.toml");
+    let text = std::fs::read_to_string(path).expect("it is shipped");
+    let driven = text.replace("[freedoms]\n", "[drivers]\n");
+    let mixed = driven.replace("\nright_angle = ", "\n[freedoms]\nright_angle = ");
+    let model = MechanismModel::new(parse(&mixed), Interface::CoSimulation).expect("it closes");
+    let sink = Box::new(Heard::default());
+    let mut instance = Instance::of_version(Version::Fmi3, model, sink, false);
+    let entered = instance.enter_initialization_mode_at(0.0, None);
+    entered.expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
+    let crank = vr(&instance, "right_crank.phi");
+    let known = instance.dependencies(Call::GetVariableDependencies, crank);
+    let known: Vec<_> = known
+        .expect("legal")
+        .into_iter()
+        .map(|(vr, _)| vr)
+        .collect();
+    for name in ["left_angle.position", "rates", "extrapolation", "state[1]"] {
+        assert!(known.contains(&vr(&instance, name)), "{name}: {known:?}");
     }
 }
 

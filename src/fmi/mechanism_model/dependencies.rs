@@ -66,7 +66,8 @@ impl<'a> DependencyTable<'a> {
                 .drivers
                 .extend((0..self.mechanism.drivers.len()).map(DriverId));
         }
-        let has_input = origins.drivers.iter().any(|id| self.is_input(*id));
+        let has_input =
+            |origins: &Dependencies| origins.drivers.iter().any(|id| self.is_input(*id));
         let of_forces: Kinds = self.dependent(self.inputs_of_forces(force)).collect();
         let parameters = |origins: &_| -> Kinds {
             self.dependent(self.parameters(unknown, origins, order))
@@ -81,7 +82,7 @@ impl<'a> DependencyTable<'a> {
         let angle = angle.and_then(|id| self.references.get(&Quantity::Input(id, Order::Position)));
         initial.extend(angle.map(|vr| (*vr, DependencyKind::Constant)));
         initial.extend(of_forces.iter().chain(&own));
-        if has_input && order > Order::Position {
+        if has_input(&origins) && order > Order::Position {
             initial.extend(self.dependent([Quantity::RateSource]));
         }
 
@@ -99,7 +100,7 @@ impl<'a> DependencyTable<'a> {
         inputs.extend(self.dependent(self.states(&origins, order, unknown)));
         inputs.extend(of_forces);
         let mut parameters = parameters(&origins);
-        if has_input {
+        if has_input(&origins) {
             let settings = [Quantity::RateSource, Quantity::Extrapolation];
             parameters.extend(self.dependent(settings));
         }
