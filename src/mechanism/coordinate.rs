@@ -18,6 +18,12 @@ pub struct Coordinate {
 }
 
 impl Coordinate {
+    /// Returns its markers; a marker may come twice.
+    #[must_use]
+    pub fn markers(&self) -> [MarkerId; 3] {
+        [self.from, self.to, self.axes]
+    }
+
     /// Returns what it measures, as descriptions of variables say it.
     #[must_use]
     pub fn describe(&self, mechanism: &Mechanism) -> String {
@@ -47,6 +53,18 @@ impl Joint {
             to,
             axes: from,
         }
+    }
+
+    /// Returns its markers, each as often as it occurs.
+    pub fn markers(&self) -> impl Iterator<Item = MarkerId> {
+        let coupled = match &self.kind {
+            JointKind::Coupling(equation) => equation.coordinates.as_slice(),
+            _ => &[],
+        };
+        let coupled = coupled
+            .iter()
+            .flat_map(|(_, coordinate)| coordinate.markers());
+        [self.from, self.to].into_iter().chain(coupled)
     }
 
     /// Returns the coordinate that tells where the joint is on its way, if there is one.

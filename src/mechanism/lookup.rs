@@ -41,7 +41,7 @@ impl Mechanism {
         let scope = Scope {
             parameters: &parameters,
             variables: variable.as_slice(),
-            signals: None,
+            moving: None,
         };
         Expression::parse(text, scope)
     }

@@ -9,6 +9,7 @@
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
+//! | `coupling` | [`CoordinateEquation`]: an equation between coordinates |
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
@@ -19,6 +20,7 @@
 //! Nothing here computes a pose.
 
 mod coordinate;
+mod coupling;
 mod derived;
 mod diagnostic;
 mod encoding;
@@ -43,11 +45,13 @@ mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use coordinate::{Coordinate, CoordinateKind};
+pub use coupling::{CoordinateEquation, MOST_COUPLED};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
+pub(crate) use expression::Values;
 #[cfg(feature = "page")]
 pub(crate) use expression::constant;
-pub use expression::{Expression, ExpressionError, Variable};
+pub use expression::{Expression, ExpressionError, LinearForm, Variable};
 pub use force::{Force, ForceComponent, ForceLaw, Load, Spring};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 #[cfg(feature = "cli")]
@@ -234,6 +238,9 @@ pub enum JointKind {
         /// Side of the track on which the wheel is.
         side: RackSide,
     },
+    /// An equation between coordinates. Marker i is the first one of its first coordinate, marker j
+    /// the second one of its last.
+    Coupling(Box<CoordinateEquation>),
     /// A follower, which has marker j, on the contour of a cam, which has marker i.
     Cam {
         /// Part of the follower that touches the cam.

@@ -119,6 +119,7 @@ fn points_of(kind: &JointKind, [from, to]: [Anchor; 2]) -> Vec<Vec<Anchor>> {
         | JointKind::Belt { .. }
         | JointKind::RackAndPinion { .. }
         | JointKind::Rolling { .. }
+        | JointKind::Coupling(_)
         | JointKind::Cam { .. } => Vec::new(),
     }
 }

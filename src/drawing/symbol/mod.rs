@@ -139,6 +139,7 @@ symbols! { composer, ends:
     track: Track, JointKind::Rolling { radius, .. } => track::compose(composer, ends, radius);
     cam: Cam, JointKind::Cam { follower, profile } =>
         cam::compose(composer, ends, follower, profile);
+    tie: Tie, JointKind::Coupling(equation) => tie::compose(composer, equation);
     knife: Knife;
     roller: Roller;
     face: Face;

@@ -129,6 +129,7 @@ impl<'a> DependencyTable<'a> {
                 ForceQuantity::Effort(_)
                 | ForceQuantity::Power(_)
                 | ForceQuantity::Reaction(..)
+                | ForceQuantity::Share(..)
                 | ForceQuantity::Held(_) => Order::Acceleration,
             }),
             Quantity::Parameter(id) if self.mechanism.parameters[id.index()].derived => {

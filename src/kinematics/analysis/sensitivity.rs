@@ -13,7 +13,7 @@
 
 use crate::kinematics::constraint::Constraint;
 use crate::kinematics::constraint::moving_configuration::{
-    Varied, VariedConfiguration, VariedMechanism, evaluate,
+    CurvesAlong, Varied, VariedConfiguration, VariedMechanism, evaluate,
 };
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::path::Rates;
@@ -24,7 +24,7 @@ use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{
     DerivedMeasure, DriverId, Dual, Expression, Jet, MarkerId, Mechanism, Motion, MotionInForce,
-    Order, ParameterId, ProfileAlong, Signal,
+    Order, ParameterId, Signal,
 };
 
 /// A direction in the space of drivers and parameters.
@@ -63,7 +63,7 @@ impl Direction {
 #[derive(Debug)]
 pub struct Sensitivity<'a> {
     at: VariedConfiguration,
-    profiles: Vec<ProfileAlong>,
+    curves: CurvesAlong,
     drivers: Vec<Varied>,
     parameters: Vec<Varied>,
     measures: &'a [Box<dyn Constraint>],
@@ -90,7 +90,7 @@ impl Sensitivity<'_> {
     pub(in crate::kinematics) fn mechanism(&self) -> VariedMechanism<'_, '_> {
         VariedMechanism {
             bodies: &self.at,
-            profiles: &self.profiles,
+            curves: &self.curves,
         }
     }
 
@@ -433,10 +433,15 @@ impl State {
         let profiles: Vec<_> = profiles
             .map(|profile| profile.in_force.along(|p| parameter(p).value.first()))
             .collect();
+        let mut laws = system.laws();
+        for law in &mut laws {
+            law.set_parameters(|p| Varied::fixed(parameter(p).value));
+        }
+        let curves = CurvesAlong { profiles, laws };
 
         Sensitivity {
             at,
-            profiles,
+            curves,
             drivers,
             parameters,
             measures: &compiled.measures,

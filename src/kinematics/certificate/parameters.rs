@@ -14,15 +14,15 @@ use nalgebra::Vector2;
 
 use crate::kinematics::constraint::configuration::{CamProfile, Configuration};
 use crate::kinematics::constraint::moving_configuration::{
-    Enclosed, EnclosedProfiles, VariedConfiguration, VariedMechanism, bend, evaluate,
+    Enclosed, EnclosedCurves, VariedConfiguration, VariedMechanism, bend, evaluate,
 };
 use crate::kinematics::constraint::{Dimension, partial};
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{Equation, System, Target, Targets};
 use crate::kinematics::tolerances::SMALLEST_SUBSTEP;
 use crate::mechanism::{
-    DriverId, Expression, Interval, Marker, MarkerId, Mechanism, MotionInForce, MovingProfile,
-    Number, ParameterId,
+    Coordinate, DriverId, Expression, Interval, Joint, Marker, MarkerId, Mechanism, MotionInForce,
+    MovingProfile, Number, ParameterId,
 };
 
 /// Largest deviation of a number or a prescribed motion that is not known to be continuous, in
@@ -44,6 +44,8 @@ pub(in crate::kinematics) struct ParameterBounds {
     motions: Vec<Option<MotionInForce<Enclosed>>>,
     /// The profiles along the sub-step, and at rest anywhere on it.
     profiles: [Vec<MovingProfile>; 2],
+    /// The laws of couplings, likewise.
+    laws: [Vec<MotionInForce<Enclosed>>; 2],
     /// Those that move, or that differ from the sub-step before: numbers without them stay as they
     /// are.
     changed: Vec<bool>,
@@ -194,11 +196,8 @@ fn used_markers(mechanism: &Mechanism) -> Vec<bool> {
     let mut used = vec![false; mechanism.markers.len()];
     let held = mechanism.constraints.iter().map(|held| &held.coordinate);
     let driven = mechanism.drivers.iter().map(|driver| &driver.coordinate);
-    let coordinates = held.chain(driven).flat_map(|c| [c.from, c.to, c.axes]);
-    let joints = mechanism
-        .joints
-        .iter()
-        .flat_map(|joint| [joint.from, joint.to]);
+    let coordinates = held.chain(driven).flat_map(Coordinate::markers);
+    let joints = mechanism.joints.iter().flat_map(Joint::markers);
     for marker in coordinates.chain(joints) {
         used[marker.index()] = true;
     }
@@ -251,6 +250,7 @@ impl ParameterBounds {
             next: vec![Enclosed::constant(0.0); parameters],
             motions: motions.collect(),
             profiles: [(); 2].map(|()| system.moving_profiles()),
+            laws: [(); 2].map(|()| system.laws()),
             changed: vec![false; parameters],
             along: system.varied(),
             around: system.varied(),
@@ -390,6 +390,11 @@ impl ParameterBounds {
             along.set_parameters(local);
             around.set_parameters(|p| Enclosed::fixed(local(p).value));
         }
+        let [along, around] = &mut self.laws;
+        for (along, around) in along.iter_mut().zip(around) {
+            along.set_parameters(local);
+            around.set_parameters(|p| Enclosed::fixed(local(p).value));
+        }
     }
 
     /// Encloses a driver's prescribed motion over the sub-step, on which time runs as `t`; see
@@ -421,9 +426,10 @@ impl ParameterBounds {
     ) -> Option<f64> {
         let mechanism = VariedMechanism {
             bodies: &self.along,
-            profiles: EnclosedProfiles {
+            curves: EnclosedCurves {
                 in_force: profiles,
                 moving: &self.profiles[0],
+                laws: &self.laws[0],
             },
         };
         let row = &self.rows[row];
@@ -439,10 +445,11 @@ impl ParameterBounds {
         profiles: &[CamProfile],
         column: usize,
     ) -> Interval {
-        let profiles = EnclosedProfiles {
+        let curves = EnclosedCurves {
             in_force: profiles,
             moving: &self.profiles[1],
+            laws: &self.laws[1],
         };
-        partial(&*equation.constraint, &mut self.around, profiles, column)
+        partial(&*equation.constraint, &mut self.around, curves, column)
     }
 }

@@ -6,7 +6,11 @@ use nalgebra::Vector2;
 
 use crate::kinematics::Error;
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
-use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism, ProfileInForce};
+use crate::mechanism::{
+    BodyId, Expression, Jet, MarkerId, Mechanism, Motion, MotionInForce, Number, ProfileInForce,
+};
+
+use super::moving_configuration::Enclosed;
 
 /// Returns a vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
 #[must_use]
@@ -117,6 +121,24 @@ pub struct JointUnknownId(pub usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProfileId(pub usize);
 
+/// The law of a coupling: index into the system's laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LawId(pub usize);
+
+/// The law of a coupling with the parameters in force, with the joint that it belongs to for
+/// messages.
+#[derive(Clone, Debug)]
+pub struct CouplingLaw {
+    /// The law, which is a function of one argument as a motion is of time.
+    pub law: Motion,
+    /// On numbers with derivatives.
+    pub in_force: MotionInForce,
+    /// On ranges of the argument.
+    pub enclosed: MotionInForce<Enclosed>,
+    /// Kind and name of the joint.
+    pub what: String,
+}
+
 /// The profile of a cam, with the joint that it belongs to for messages.
 #[derive(Clone, Debug)]
 pub struct CamProfile {
@@ -146,6 +168,7 @@ pub struct Configuration {
     bodies: Vec<BodyPose>,
     coefficients: Vec<f64>,
     profiles: Vec<CamProfile>,
+    laws: Vec<CouplingLaw>,
     /// The joint unknowns, behind those of the bodies.
     joint_unknowns: Vec<f64>,
     size: f64,
@@ -157,7 +180,7 @@ impl Configuration {
     pub fn new(
         mechanism: &Mechanism,
         coefficients: usize,
-        profiles: Vec<CamProfile>,
+        (profiles, laws): (Vec<CamProfile>, Vec<CouplingLaw>),
         joint_unknowns: usize,
     ) -> Self {
         let frames = mechanism
@@ -175,6 +198,7 @@ impl Configuration {
             bodies: vec![BodyPose::GROUND; mechanism.bodies.len() + 1],
             coefficients: vec![0.0; coefficients],
             profiles,
+            laws,
             joint_unknowns: vec![0.0; joint_unknowns],
             size: 0.0,
         }
@@ -221,6 +245,16 @@ impl Configuration {
                 what: profile.what.clone(),
                 error,
             })?;
+        }
+        for law in &mut self.laws {
+            law.in_force.set_parameters(|p| Jet::constant(value(p)));
+            law.enclosed
+                .set_parameters(|p| Enclosed::constant(value(p)));
+            if !law.in_force.evaluate(Jet::constant(0.0)).is_finite() {
+                return Err(Error::NotFinite {
+                    what: law.what.clone(),
+                });
+            }
         }
         self.size = size(mechanism, &self.frames, &self.profiles);
         Ok(())
@@ -348,6 +382,12 @@ impl Configuration {
     #[must_use]
     pub fn profile(&self, id: ProfileId) -> &ProfileInForce {
         &self.profiles[id.0].in_force
+    }
+
+    /// Returns the law of a coupling with the parameter values in force.
+    #[must_use]
+    pub fn law(&self, id: LawId) -> &CouplingLaw {
+        &self.laws[id.0]
     }
 
     /// Returns all profiles.

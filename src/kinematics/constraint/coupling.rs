@@ -1,94 +1,387 @@
-//! Two wheels that turn in a fixed ratio: gears, and wheels on a belt.
+//! An equation between coordinates.
 
-use super::configuration::{CoefficientId, Configuration};
+use super::CoordinateRelation;
+use super::configuration::{CoefficientId, Configuration, LawId};
 use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
-use super::moving_configuration::{Moving, VariedMechanism};
+use super::moving_configuration::{Enclosed, Moving, Varied, VariedMechanism, bend};
 use super::region::Region;
-use crate::mechanism::{BodyId, MarkerId, Mechanism};
+use crate::mechanism::{
+    Dual, Expression, Interval, Jet, MOST_COUPLED, Mechanism, Number, ParameterId, Values, Variable,
+};
 
-/// c = (theta_j − phi_c) − k (theta_i − phi_c), with k = ±r_i / r_j and whole turns.
+/// c = f(s₁, s₂, …), the difference of both sides of an equation between coordinates s.
 ///
-/// It is linear in q, so that the phase keeps its accuracy over any number of turns.
+/// With f_i = ∂f/∂s_i the gradient is Σ f_i ∂s_i/∂q, and the second derivatives follow by the chain
+/// rule: f on numbers s_i with derivatives has those of c.
 #[derive(Clone, Debug)]
 pub struct Coupling {
-    /// Marker i, on the first wheel.
-    pub from: MarkerId,
-    /// Marker j, on the second wheel.
-    pub to: MarkerId,
-    /// Body c that carries the wheels' centres, `None` for ground.
-    pub carrier: Option<BodyId>,
-    /// r_i and r_j, in metres or teeth.
-    pub sizes: [CoefficientId; 2],
-    /// Whether the wheels turn in opposite senses relative to their carrier.
-    pub opposite: bool,
+    /// The coordinates.
+    pub coordinates: Vec<CoordinateRelation>,
+    /// f.
+    pub function: CoupledFunction,
+    /// The dimension of both sides.
+    pub dimension: Dimension,
+}
+
+/// A function of coordinates.
+#[derive(Clone, Debug)]
+pub enum CoupledFunction {
+    /// Σ k_i s_i + k.
+    Linear {
+        /// k_i.
+        factors: Vec<CoefficientId>,
+        /// k.
+        rest: CoefficientId,
+        /// Whether no k_i depends on parameters, and none is zero.
+        is_fixed: bool,
+    },
+    /// An expression.
+    Expression(CoupledExpression),
+}
+
+/// An expression of coordinates.
+#[derive(Clone, Debug)]
+pub struct CoupledExpression {
+    /// Over the coordinates by their places.
+    pub expression: Expression,
+    /// Its parameters, each with the coefficient that has its value.
+    pub parameters: Vec<(ParameterId, CoefficientId)>,
+    /// The table that it calls.
+    pub law: Option<LawId>,
+}
+
+impl CoupledExpression {
+    /// Returns the numbers in the expression.
+    fn inputs<N: Number>(
+        &self,
+        coordinates: [N; MOST_COUPLED],
+        coefficient: impl Fn(CoefficientId) -> N,
+        law: impl Fn(LawId, N) -> N,
+    ) -> impl Values<N> {
+        Inputs {
+            coordinates,
+            parameters: &self.parameters,
+            coefficient,
+            law: move |argument| self.law.map_or_else(N::unknown, |own| law(own, argument)),
+        }
+    }
+}
+
+/// Width of a part in which pieces of a function may meet, as a part of a sub-step.
+const SEAM: f64 = 1.0 / (1_u64 << 26) as f64;
+/// Change of a function across a seam that is rounding, relative to its value or one.
+const JUMP: f64 = 1e-9;
+/// Most parts that wait while a sub-step is halved down to [`SEAM`].
+const MOST_PARTS: usize = 32;
+/// Most parts that are examined: those of some ten seams.
+const MOST_LOOKS: usize = 600;
+
+/// The numbers in an expression.
+struct Inputs<'a, N, C, L> {
+    coordinates: [N; MOST_COUPLED],
+    parameters: &'a [(ParameterId, CoefficientId)],
+    coefficient: C,
+    law: L,
+}
+
+impl<N: Number, C: Fn(CoefficientId) -> N, L: Fn(N) -> N> Values<N> for Inputs<'_, N, C, L> {
+    fn parameter(&self, id: ParameterId) -> N {
+        let mut parameters = self.parameters.iter();
+        let own = parameters.find(|(parameter, _)| *parameter == id);
+        own.map_or_else(N::unknown, |(_, coefficient)| {
+            (self.coefficient)(*coefficient)
+        })
+    }
+
+    fn variable(&self, which: Variable) -> N {
+        match which {
+            Variable::Coordinate(place) => self.coordinates[place],
+            _ => N::unknown(),
+        }
+    }
+
+    fn law(&self, argument: N) -> N {
+        (self.law)(argument)
+    }
 }
 
 impl Coupling {
-    fn ratio(&self, at: &Configuration) -> f64 {
-        let [first, second] = self.sizes.map(|size| at.coefficient(size));
-        let ratio = first / second;
-        if self.opposite { -ratio } else { ratio }
+    /// Returns f for these coordinates.
+    fn function<N: Number>(
+        &self,
+        coordinates: [N; MOST_COUPLED],
+        coefficient: impl Fn(CoefficientId) -> N,
+        law: impl Fn(LawId, N) -> N,
+    ) -> N {
+        match &self.function {
+            CoupledFunction::Linear { factors, rest, .. } => {
+                let terms = coordinates.into_iter().zip(factors);
+                terms.fold(coefficient(*rest), |sum, (s, factor)| {
+                    sum + coefficient(*factor) * s
+                })
+            }
+            CoupledFunction::Expression(coupled) => {
+                let inputs = coupled.inputs(coordinates, coefficient, law);
+                coupled.expression.evaluate_with(&inputs)
+            }
+        }
+    }
+
+    /// Returns f for these moving coordinates with the parameters in force.
+    fn in_force(&self, at: &Configuration, coordinates: [Jet; MOST_COUPLED]) -> Jet {
+        let coefficient = |id| Jet::constant(at.coefficient(id));
+        let law = |law, argument| at.law(law).in_force.evaluate(argument);
+        self.function(coordinates, coefficient, law)
+    }
+
+    /// Encloses f for ranges of the coordinates with the parameters in force. Where pieces of it meet
+    /// with a jump, which are shown to join, the derivatives are those of all pieces.
+    fn enclosed(&self, at: &Configuration, coordinates: [Enclosed; MOST_COUPLED]) -> Enclosed {
+        let coefficient = |id| Enclosed::constant(at.coefficient(id));
+        let law = |law, argument| {
+            let law = at.law(law).enclosed.enclose(argument);
+            law.unwrap_or_else(Enclosed::unknown)
+        };
+        let enclosed = self.function(coordinates, coefficient, law);
+        match &self.function {
+            CoupledFunction::Expression(coupled) if !enclosed.first().is_finite() => {
+                let inputs = coupled.inputs(coordinates, coefficient, law);
+                let pieces = coupled.expression.enclose_all_pieces(&inputs);
+                let pieces = pieces.filter(|_| self.joins(at, coordinates.map(|s| s.value)));
+                pieces.unwrap_or(enclosed)
+            }
+            _ => enclosed,
+        }
+    }
+
+    /// Returns whether f is continuous between the lowest and the highest values of the coordinates:
+    /// halves each part that cannot be shown to be so, down to [`SEAM`], across which f must not
+    /// change by more than its slopes make it.
+    fn joins(&self, at: &Configuration, ranges: [Interval; MOST_COUPLED]) -> bool {
+        let place = |part: f64| ranges.map(|Interval { low, high }| low + part * (high - low));
+        let smooth = |[from, to]: [f64; 2]| {
+            let (from, to) = (place(from), place(to));
+            let mut numbers = [Enclosed::constant(0.0); MOST_COUPLED];
+            for (k, number) in numbers.iter_mut().enumerate() {
+                let way = Interval::point(to[k] - from[k]);
+                *number = Enclosed::linear(Interval::new(from[k], to[k]), way);
+            }
+            let coefficient = |id| Enclosed::constant(at.coefficient(id));
+            let law = |law, argument| {
+                let law = at.law(law).enclosed.enclose(argument);
+                law.unwrap_or_else(Enclosed::unknown)
+            };
+            self.function(numbers, coefficient, law).first().is_finite()
+        };
+        let meets = |[from, to]: [f64; 2]| {
+            let rate = |k: usize| (ranges[k].high - ranges[k].low) * (to - from);
+            let at_end = |part: f64| {
+                let mut numbers = place(part).map(Jet::constant);
+                for (k, number) in numbers.iter_mut().enumerate() {
+                    *number = Jet::linear(number.value, rate(k));
+                }
+                self.in_force(at, numbers)
+            };
+            let [before, after] = [from, to].map(at_end);
+            let slope = before.first().abs() + after.first().abs();
+            let rounding = JUMP * (1.0 + before.value.abs());
+            (after.value - before.value).abs() <= 2.0 * slope + rounding
+        };
+        // Parts still to be examined, the last one first.
+        let mut open = [[0.0, 1.0]; MOST_PARTS];
+        let mut count = 1_usize;
+        for _ in 0..MOST_LOOKS {
+            let Some(last) = count.checked_sub(1) else {
+                return true;
+            };
+            count = last;
+            let [from, to] = open[last];
+            if smooth([from, to]) {
+                continue;
+            }
+            if to - from <= SEAM || last + 2 > MOST_PARTS {
+                if !meets([from, to]) {
+                    return false;
+                }
+                continue;
+            }
+            let middle = from.midpoint(to);
+            open[last] = [middle, to];
+            open[last + 1] = [from, middle];
+            count = last + 2;
+        }
+        false
+    }
+
+    /// Returns one number per coordinate, zero beyond the last.
+    fn each<N: Number>(&self, of: impl Fn(&CoordinateRelation) -> N) -> [N; MOST_COUPLED] {
+        let mut numbers = [N::constant(0.0); MOST_COUPLED];
+        for (number, coordinate) in numbers.iter_mut().zip(&self.coordinates) {
+            *number = of(coordinate);
+        }
+        numbers
+    }
+
+    /// Returns the values of the coordinates.
+    fn values(&self, at: &Configuration) -> [f64; MOST_COUPLED] {
+        self.each(|coordinate| coordinate.constraint().value(at))
+    }
+
+    /// Returns f_i.
+    pub(in crate::kinematics) fn partials(&self, at: &Configuration) -> [f64; MOST_COUPLED] {
+        let mut partials = [0.0; MOST_COUPLED];
+        if let CoupledFunction::Linear { factors, .. } = &self.function {
+            for (partial, factor) in partials.iter_mut().zip(factors) {
+                *partial = at.coefficient(*factor);
+            }
+            return partials;
+        }
+        let mut numbers = self.values(at).map(Jet::constant);
+        for (k, partial) in partials[..self.coordinates.len()].iter_mut().enumerate() {
+            numbers[k] = Jet::variable(numbers[k].value);
+            *partial = self.in_force(at, numbers).first();
+            numbers[k] = Jet::constant(numbers[k].value);
+        }
+        partials
+    }
+
+    /// Returns f_i of a coordinate with its change along a direction.
+    pub(in crate::kinematics) fn varied_partial(
+        &self,
+        at: &VariedMechanism<'_, '_>,
+        place: usize,
+    ) -> Dual {
+        let mut numbers = self.each(|coordinate| Varied::fixed(coordinate.evaluate(at).value));
+        numbers[place] = Varied::variable(numbers[place].value);
+        let coefficient = |id| Varied::fixed(at.coefficient(id).value);
+        let law = |law, argument| at.law(law, argument);
+        self.function(numbers, coefficient, law).first()
     }
 }
 
 impl Formula for Coupling {
     fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
-        let phi = at.phi(self.carrier);
-        let [first, second] = [self.from, self.to].map(|marker| at.marker(marker).theta - phi);
-        let [i, j] = self.sizes.map(|size| at.coefficient(size));
-        let turned = i / j * first;
-        if self.opposite {
-            second + turned
-        } else {
-            second - turned
-        }
+        let coordinates = self.each(|coordinate| coordinate.evaluate(at));
+        let law = |law, argument| at.law(law, argument);
+        self.function(coordinates, |id| at.coefficient(id), law)
     }
 }
 
 impl Constraint for Coupling {
     fn dimension(&self) -> Dimension {
-        Dimension::Angle
+        self.dimension
     }
 
     fn value(&self, at: &Configuration) -> f64 {
-        let phi = at.phi(self.carrier);
-        let [first, second] = [self.from, self.to].map(|marker| at.marker(marker).theta - phi);
-        second - self.ratio(at) * first
+        self.in_force(at, self.values(at).map(Jet::constant)).value
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        let k = self.ratio(at);
-        row.add_direction(at.marker(self.to), 1.0);
-        row.add_direction(at.marker(self.from), -k);
-        row.add_turn(self.carrier, k - 1.0);
+        let mut own = Gradient::new();
+        for (coordinate, partial) in self.coordinates.iter().zip(self.partials(at)) {
+            own.clear();
+            coordinate.constraint().gradient(at, &mut own);
+            row.add_multiple(partial, &own);
+        }
     }
 
-    /// Returns zero: the relation is linear in q.
-    fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
-        0.0
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let mut own = Gradient::new();
+        let mut numbers = [Jet::constant(0.0); MOST_COUPLED];
+        for (number, coordinate) in numbers.iter_mut().zip(&self.coordinates) {
+            own.clear();
+            let coordinate = coordinate.constraint();
+            let value = coordinate.value_and_gradient(at, &mut own);
+            let second = coordinate.quadratic(at, q_dot);
+            *number = Jet::new(value, [own.dot(q_dot), second]);
+        }
+        self.in_force(at, numbers).second()
+    }
+
+    /// Returns whether f has pieces: a law through points, or a switch.
+    fn has_contour(&self) -> bool {
+        match &self.function {
+            CoupledFunction::Linear { .. } => false,
+            CoupledFunction::Expression(coupled) => {
+                coupled.law.is_some() || coupled.expression.has_pieces()
+            }
+        }
+    }
+
+    fn is_linear(&self, mechanism: &Mechanism) -> bool {
+        let mut coordinates = self.coordinates.iter();
+        matches!(
+            self.function,
+            CoupledFunction::Linear { is_fixed: true, .. }
+        ) && coordinates.all(|coordinate| coordinate.constraint().is_linear(mechanism))
     }
 
     fn turn_effect(&self) -> TurnEffect {
-        TurnEffect::Proportional
+        let mut effects = self
+            .coordinates
+            .iter()
+            .map(|own| own.constraint().turn_effect());
+        if effects.any(|effect| effect != TurnEffect::None) {
+            TurnEffect::Proportional
+        } else {
+            TurnEffect::None
+        }
     }
 
-    /// Returns zero: the relation is linear in q.
+    /// Encloses each coordinate over the region with its first two derivatives along v, and f on
+    /// these. At a corner of f, which only a line may pass, 8 times the distance from the chord takes
+    /// the place of the second derivative.
     fn bend(
         &self,
-        _at: &Configuration,
-        _region: &Region<'_>,
-        _v: &[f64],
-        _row: &mut Gradient,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
     ) -> Option<f64> {
-        Some(0.0)
+        let partials = self.partials(at);
+        let mut own = Gradient::new();
+        let mut numbers = [Enclosed::constant(0.0); MOST_COUPLED];
+        let mut changes: [Gradient; MOST_COUPLED] = Default::default();
+        for (k, coordinate) in self.coordinates.iter().enumerate() {
+            let coordinate = coordinate.constraint();
+            let change = &mut changes[k];
+            let bend = coordinate.bend(at, region, v, change)?;
+            own.clear();
+            let value = coordinate.value_and_gradient(at, &mut own);
+            let rate = own.dot(v);
+            let off_rate: f64 = change.entries().map(|(k, by)| by * v[k].abs()).sum();
+            let reach = own.entries().chain(change.entries());
+            let reach: f64 = reach.map(|(k, by)| by.abs() * region.radius(k)).sum();
+            let about = |middle: f64, off: f64| Interval::new(middle - off, middle + off);
+            let derivatives = [about(rate, off_rate), about(0.0, bend), Interval::unknown()];
+            numbers[k] = Enclosed::new(about(value, reach), derivatives);
+        }
+        for (k, coordinate) in self.coordinates.iter().enumerate() {
+            let mut still = numbers.map(|number| Enclosed::fixed(number.value));
+            still[k] = Enclosed::variable(numbers[k].value);
+            let slope = self.enclosed(at, still).first();
+            let change = (slope - Interval::point(partials[k])).magnitude();
+            if !change.is_finite() {
+                return None;
+            }
+            own.clear();
+            coordinate.constraint().gradient(at, &mut own);
+            own.replace(|_, entry| entry.abs());
+            row.add_multiple(change, &own);
+            row.add_multiple(slope.magnitude(), &changes[k]);
+        }
+        let along = self.enclosed(at, numbers);
+        let bound = match region.line {
+            Some(_) => bend(&along),
+            None => along.second().magnitude(),
+        };
+        (along.first().is_finite() && bound.is_finite()).then_some(bound)
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
-        incidence.direction(mechanism, self.from);
-        incidence.direction(mechanism, self.to);
-        incidence
-            .unknowns
-            .extend(self.carrier.map(|body| 3 * body.index() + 2));
+        for coordinate in &self.coordinates {
+            coordinate.constraint().incidence(mechanism, incidence);
+        }
     }
 }

@@ -81,7 +81,7 @@ impl<N: Moving, F: Formula> Along<N> for F {
 pub(in crate::kinematics) fn partial<S: Number, const N: usize>(
     relation: &(impl Along<Taylor<S, N>> + ?Sized),
     bodies: &mut VariedConfiguration<Taylor<S, N>>,
-    profiles: <Taylor<S, N> as Moving>::Profiles<'_>,
+    curves: <Taylor<S, N> as Moving>::Curves<'_>,
     column: usize,
 ) -> S
 where
@@ -90,7 +90,7 @@ where
     let q = bodies.coordinate(column);
     // At rest but for a unit rate of this unknown, the rate of the relation is its derivative.
     bodies.set_coordinate(column, Taylor::linear(q.value, S::constant(1.0)));
-    let rate = relation.along(&VariedMechanism { bodies, profiles });
+    let rate = relation.along(&VariedMechanism { bodies, curves });
     bodies.set_coordinate(column, q);
     rate.first()
 }

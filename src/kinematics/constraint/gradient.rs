@@ -3,15 +3,15 @@
 use nalgebra::Vector2;
 
 use super::configuration::{MarkerPose, perp};
-use crate::mechanism::BodyId;
+use crate::mechanism::{BodyId, MOST_COUPLED};
 
-/// A row of the Jacobian: its entries for at most three bodies and one joint unknown.
+/// A row of the Jacobian: its entries for at most [`MOST_COUPLED`] bodies and one joint unknown.
 ///
-/// It does not allocate. A relation has at most three markers, hence three bodies.
+/// It does not allocate.
 #[derive(Clone, Debug, Default)]
 pub struct Gradient {
     len: usize,
-    parts: [(usize, [f64; 3]); 3],
+    parts: [(usize, [f64; 3]); MOST_COUPLED],
     /// Index in q of a joint unknown, and its entry.
     joint_unknown: Option<(usize, f64)>,
 }
@@ -56,6 +56,17 @@ impl Gradient {
     pub fn add_turn(&mut self, body: Option<BodyId>, factor: f64) {
         if let Some(part) = self.part(body) {
             part[2] += factor;
+        }
+    }
+
+    /// Adds the multiple of a row that has no joint unknown.
+    pub(super) fn add_multiple(&mut self, factor: f64, row: &Self) {
+        for &(body, entries) in row.bodies() {
+            if let Some(part) = self.part(Some(BodyId(body))) {
+                for (entry, value) in part.iter_mut().zip(entries) {
+                    *entry += factor * value;
+                }
+            }
         }
     }
 

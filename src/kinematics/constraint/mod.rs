@@ -28,13 +28,14 @@ mod point;
 mod projection;
 mod rack_and_pinion;
 mod region;
+mod wheel_pair;
 
 use std::any::Any;
 
 pub use angle::Angle;
 pub use cam::{Contour, FlatContact, FlatFace, KnifeEdge, Roller, RollerContact};
 pub use coincidence::Coincidence;
-pub use coupling::Coupling;
+pub use coupling::{CoupledExpression, CoupledFunction, Coupling};
 pub(super) use definition::partial;
 pub use definition::{
     Along, Axis, Constraint, Dimension, Formula, Incidence, JointUnknown, TurnEffect,
@@ -45,8 +46,10 @@ pub use point::{point_acceleration, point_velocity};
 pub use projection::Projection;
 pub use rack_and_pinion::RackAndPinion;
 pub use region::Region;
+pub use wheel_pair::WheelPair;
 
 use crate::mechanism::{Coordinate, CoordinateKind};
+use moving_configuration::{Moving, VariedMechanism};
 
 /// The kind of a relation, for block solvers in closed form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,26 +85,69 @@ impl Relation {
     }
 }
 
+/// The relation of a coordinate of the mechanism file.
+#[derive(Clone, Copy, Debug)]
+pub enum CoordinateRelation {
+    /// An angle.
+    Angle(Angle),
+    /// A coordinate x or y.
+    Projection(Projection),
+    /// A distance.
+    Distance(Distance),
+}
+
+impl CoordinateRelation {
+    /// Returns the relation of a coordinate.
+    #[must_use]
+    pub fn of(coordinate: &Coordinate) -> Self {
+        let Coordinate {
+            kind,
+            from,
+            to,
+            axes,
+        } = *coordinate;
+        let projection = |axis| Projection {
+            from,
+            to,
+            axes,
+            axis,
+        };
+        match kind {
+            CoordinateKind::Angle => Self::Angle(Angle { from, to }),
+            CoordinateKind::X => Self::Projection(projection(Axis::X)),
+            CoordinateKind::Y => Self::Projection(projection(Axis::Y)),
+            CoordinateKind::Distance => Self::Distance(Distance { from, to }),
+        }
+    }
+
+    /// Returns it as a constraint.
+    #[must_use]
+    pub fn constraint(&self) -> &dyn Constraint {
+        match self {
+            Self::Angle(relation) => relation,
+            Self::Projection(relation) => relation,
+            Self::Distance(relation) => relation,
+        }
+    }
+}
+
+impl Formula for CoordinateRelation {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
+        match self {
+            Self::Angle(relation) => relation.evaluate(at),
+            Self::Projection(relation) => relation.evaluate(at),
+            Self::Distance(relation) => relation.evaluate(at),
+        }
+    }
+}
+
 /// Returns the relation of a coordinate of the mechanism file.
 #[must_use]
 pub fn of_coordinate(coordinate: &Coordinate) -> Box<dyn Constraint> {
-    let Coordinate {
-        kind,
-        from,
-        to,
-        axes,
-    } = *coordinate;
-    let projection = |axis| Projection {
-        from,
-        to,
-        axes,
-        axis,
-    };
-    match kind {
-        CoordinateKind::Angle => Box::new(Angle { from, to }),
-        CoordinateKind::X => Box::new(projection(Axis::X)),
-        CoordinateKind::Y => Box::new(projection(Axis::Y)),
-        CoordinateKind::Distance => Box::new(Distance { from, to }),
+    match CoordinateRelation::of(coordinate) {
+        CoordinateRelation::Angle(relation) => Box::new(relation),
+        CoordinateRelation::Projection(relation) => Box::new(relation),
+        CoordinateRelation::Distance(relation) => Box::new(relation),
     }
 }
 

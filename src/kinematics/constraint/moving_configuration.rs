@@ -7,10 +7,12 @@
 //! | [`Varied`] | in time, each with its change along a direction in the space of drivers and parameters | [`Sensitivity`](crate::kinematics::Sensitivity) |
 //! | [`Enclosed`] | along a sub-step, each enclosed over all of it | the certificate while parameters move |
 
-use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
+use super::configuration::{
+    CamProfile, Coefficient, CoefficientId, JointUnknownId, LawId, ProfileId,
+};
 use crate::mechanism::{
-    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, MovingProfile, Number,
-    ProfileAlong, Taylor,
+    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, MotionInForce, MovingProfile,
+    Number, ProfileAlong, Taylor,
 };
 
 /// A quantity with its first two derivatives in time, each with its change along a direction.
@@ -21,36 +23,61 @@ pub type Enclosed = Jet3<Interval>;
 
 /// A number that the quantities of a moving mechanism are made of.
 pub trait Moving: Number {
-    /// The profiles of all cams.
-    type Profiles<'a>: Copy + std::fmt::Debug;
+    /// The profiles of all cams and the laws of all couplings.
+    type Curves<'a>: Copy + std::fmt::Debug;
 
     /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ). Derivatives that do not
     /// exist are not finite.
-    fn radius(profiles: Self::Profiles<'_>, profile: ProfileId, theta: Self) -> [Self; 2];
+    fn radius(curves: Self::Curves<'_>, profile: ProfileId, theta: Self) -> [Self; 2];
+
+    /// Returns a law at a moving argument. Derivatives that do not exist are not finite.
+    fn law(curves: Self::Curves<'_>, law: LawId, argument: Self) -> Self;
+}
+
+/// The profiles of all cams and the laws of all couplings along a direction.
+#[derive(Clone, Debug, Default)]
+pub struct CurvesAlong {
+    /// The profiles.
+    pub profiles: Vec<ProfileAlong>,
+    /// The laws.
+    pub laws: Vec<MotionInForce<Varied>>,
 }
 
 impl Moving for Varied {
-    type Profiles<'a> = &'a [ProfileAlong];
+    type Curves<'a> = &'a CurvesAlong;
 
-    fn radius(profiles: &[ProfileAlong], profile: ProfileId, theta: Self) -> [Self; 2] {
-        of_contour(profiles[profile.0].radius(theta.value), theta)
+    fn radius(curves: &CurvesAlong, profile: ProfileId, theta: Self) -> [Self; 2] {
+        of_contour(curves.profiles[profile.0].radius(theta.value), theta)
+    }
+
+    fn law(curves: &CurvesAlong, law: LawId, argument: Self) -> Self {
+        curves.laws[law.0].evaluate(argument)
     }
 }
 
-/// The profiles of all cams along a sub-step.
+/// The profiles of all cams and the laws of all couplings along a sub-step.
 #[derive(Clone, Copy, Debug)]
-pub struct EnclosedProfiles<'a> {
-    /// With the parameters in force at its end.
+pub struct EnclosedCurves<'a> {
+    /// The profiles with the parameters in force at its end.
     pub in_force: &'a [CamProfile],
     /// The same with parameters that may move; empty if none does.
     pub moving: &'a [MovingProfile],
+    /// The laws with parameters that may move.
+    pub laws: &'a [MotionInForce<Enclosed>],
 }
 
 impl Moving for Enclosed {
-    type Profiles<'a> = EnclosedProfiles<'a>;
+    type Curves<'a> = EnclosedCurves<'a>;
 
-    fn radius(profiles: EnclosedProfiles<'_>, profile: ProfileId, theta: Self) -> [Self; 2] {
-        let EnclosedProfiles { in_force, moving } = profiles;
+    fn law(curves: EnclosedCurves<'_>, law: LawId, argument: Self) -> Self {
+        let law = curves.laws[law.0].enclose(argument);
+        law.unwrap_or_else(Self::unknown)
+    }
+
+    fn radius(curves: EnclosedCurves<'_>, profile: ProfileId, theta: Self) -> [Self; 2] {
+        let EnclosedCurves {
+            in_force, moving, ..
+        } = curves;
         let in_force = &in_force[profile.0].in_force;
         if let Some(moving) = moving.get(profile.0).filter(|profile| profile.moves()) {
             return (moving.radius(in_force, theta)).unwrap_or([Self::unknown(); 2]);
@@ -130,8 +157,8 @@ pub struct VariedConfiguration<N = Varied> {
 pub struct VariedMechanism<'a, 'p, N: Moving = Varied> {
     /// Its bodies.
     pub bodies: &'a VariedConfiguration<N>,
-    /// The profiles of its cams.
-    pub profiles: N::Profiles<'p>,
+    /// The curves in its relations.
+    pub curves: N::Curves<'p>,
 }
 
 impl<N> Default for VariedConfiguration<N> {
@@ -335,7 +362,13 @@ impl<N: Moving> VariedMechanism<'_, '_, N> {
     /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ).
     #[must_use]
     pub fn radius(&self, profile: ProfileId, theta: N) -> [N; 2] {
-        N::radius(self.profiles, profile, theta)
+        N::radius(self.curves, profile, theta)
+    }
+
+    /// Returns a law at a moving argument.
+    #[must_use]
+    pub fn law(&self, law: LawId, argument: N) -> N {
+        N::law(self.curves, law, argument)
     }
 }
 

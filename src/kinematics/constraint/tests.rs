@@ -3,15 +3,16 @@
 use proptest::prelude::*;
 
 use super::moving_configuration::{
-    Enclosed, EnclosedProfiles, Varied, VariedConfiguration, VariedMechanism,
+    CurvesAlong, Enclosed, EnclosedCurves, Varied, VariedConfiguration, VariedMechanism,
 };
 use super::*;
 use crate::kinematics::{
-    CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId,
+    CamProfile, Coefficient, CoefficientId, Configuration, CouplingLaw, JointUnknownId, LawId,
+    ProfileId,
 };
 use crate::mechanism::{
-    BodyId, Dual, Expression, Interval, JointKind, MarkerId, Mechanism, Number, ProfileInForce,
-    RackSide, Source,
+    BodyId, CoordinateEquation, Dual, Expression, Interval, JointKind, MarkerId, Mechanism, Motion,
+    MotionInForce, Number, ProfileInForce, RackSide, Source,
 };
 
 /// Three bodies and ground with markers in general position, one of them at its body's origin,
@@ -33,6 +34,16 @@ type = "cam"
 markers = ["a.A", "b.B"]
 follower = "flat"
 profile = "0.4 + 0.05*cos(theta) + 0.02*sin(3*theta)"
+[joints]
+line = { type = "coupling", equation = "2*turn - far = 0.5*near + 1" }
+angles = { type = "coupling", equation = "2*turn = 3*lean" }
+curve = { type = "coupling", equation = "lean = atan2(near*sin(turn), 9 + far) + near^2*far" }
+law = { type = "coupling", equation = "far = law(turn)*near", law = { table = [[-8, 0.2], [-3, 0.5], [2, -0.4], [9, 0.3]] } }
+[measures]
+turn = { coordinate = "angle", markers = ["a.A", "b.B"] }
+lean = { coordinate = "angle", markers = ["ground.G", "c.C"] }
+near = { coordinate = "y", markers = ["a.A", "c.C"], axes = "b.B" }
+far = { coordinate = "distance", markers = ["ground.G", "a.O"] }
 "#;
 
 /// Generalized coordinates of the three bodies, and the angle of a cam's contact.
@@ -83,7 +94,7 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
         ("ground.G", "b.B", Some(BodyId(0))),
     ] {
         for opposite in [false, true] {
-            samples.push(Box::new(Coupling {
+            samples.push(Box::new(WheelPair {
                 from: id(from),
                 to: id(to),
                 carrier,
@@ -124,7 +135,58 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
         samples.push(Box::new(FlatContact { contour, follower }));
         samples.push(Box::new(FlatFace { contour, follower }));
     }
+    for joint in &mechanism.joints {
+        if let JointKind::Coupling(equation) = &joint.kind {
+            samples.push(Box::new(coupling(equation)));
+        }
+    }
     samples
+}
+
+/// Returns the relation of an equation without parameters. One of linear terms is one with the
+/// coefficients of the samples.
+fn coupling(equation: &CoordinateEquation) -> Coupling {
+    let linear = equation.difference.linear_form(equation.coordinates.len());
+    let coordinates = equation.coordinates.iter();
+    Coupling {
+        coordinates: coordinates
+            .map(|(_, coordinate)| CoordinateRelation::of(coordinate))
+            .collect(),
+        function: match linear {
+            Some(linear) => CoupledFunction::Linear {
+                factors: (0..linear.factors.len())
+                    .map(|k| CoefficientId(k % 2))
+                    .collect(),
+                rest: CoefficientId(0),
+                is_fixed: true,
+            },
+            None => CoupledFunction::Expression(CoupledExpression {
+                expression: equation.difference.clone(),
+                parameters: Vec::new(),
+                law: equation.law.as_ref().map(|_| LawId(0)),
+            }),
+        },
+        dimension: Dimension::Length,
+    }
+}
+
+/// Returns the law of the sample's coupling.
+fn law(mechanism: &Mechanism) -> Motion {
+    let mut laws = mechanism
+        .joints
+        .iter()
+        .filter_map(|joint| match &joint.kind {
+            JointKind::Coupling(equation) => equation.law.clone(),
+            _ => None,
+        });
+    laws.next().expect("the sample has a law")
+}
+
+/// Returns the law of the sample on some type of numbers.
+fn law_on<N: Number>(mechanism: &Mechanism) -> Vec<MotionInForce<N>> {
+    let mut law = MotionInForce::new(&law(mechanism), 0);
+    law.set_parameters(|_| N::constant(0.0));
+    vec![law]
 }
 
 /// Returns the coefficients of the samples.
@@ -145,7 +207,14 @@ fn configuration(mechanism: &Mechanism) -> Configuration {
         in_force: ProfileInForce::new(profile, 0),
         what: "a sample".to_owned(),
     }];
-    let mut at = Configuration::new(mechanism, coefficients().len(), profiles, 1);
+    let law = law(mechanism);
+    let laws = vec![CouplingLaw {
+        in_force: MotionInForce::new(&law, 0),
+        enclosed: MotionInForce::new(&law, 0),
+        law,
+        what: "a sample".to_owned(),
+    }];
+    let mut at = Configuration::new(mechanism, coefficients().len(), (profiles, laws), 1);
     at.set_parameters(mechanism, &coefficients(), &[])
         .expect("the sample has numbers only");
     at
@@ -239,7 +308,8 @@ proptest! {
         }
         let profiles = at.profiles().iter();
         let profiles: Vec<_> = profiles.map(|profile| profile.in_force.along(|_| 0.0)).collect();
-        let varied = VariedMechanism { bodies: &varied, profiles: &profiles };
+        let curves = CurvesAlong { profiles, laws: law_on(&mechanism) };
+        let varied = VariedMechanism { bodies: &varied, curves: &curves };
         for constraint in samples(&mechanism) {
             let mut motion = |s: f64| {
                 let q = moved(&q, &changes[0], s);
@@ -343,13 +413,14 @@ proptest! {
             around.set_coordinate(k, Enclosed::fixed(wider));
         }
         let profiles = at.profiles().to_vec();
-        let profiles = EnclosedProfiles { in_force: &profiles, moving: &[] };
-        let chord = VariedMechanism { bodies: &chord, profiles };
+        let laws = law_on(&mechanism);
+        let curves = EnclosedCurves { in_force: &profiles, moving: &[], laws: &laws };
+        let chord = VariedMechanism { bodies: &chord, curves };
         for constraint in samples(&mechanism) {
             let on_chord = constraint.along(&chord);
             let motion = [on_chord.value, on_chord.first(), on_chord.second()];
             let gradient: Vec<_> = (0..UNKNOWNS)
-                .map(|k| partial(&*constraint, &mut around, profiles, k))
+                .map(|k| partial(&*constraint, &mut around, curves, k))
                 .collect();
             for (place, s) in places.iter().zip(&along) {
                 let here = moved(&q, &v, *s);

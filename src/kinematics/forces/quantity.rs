@@ -14,10 +14,14 @@ pub enum ForceQuantity {
     /// Effort of a driver if the accelerations of all drivers that are inputs were zero.
     Bias(DriverId),
     /// Component of the reaction of a joint, by its index: fx (component 0), fy (1) or torque (2),
-    /// exerted on the second marker's body at that marker's point, in ground axes \[N, N, N m\].
+    /// exerted on the second marker's body at that marker's point, in ground axes \[N, N, N m\]. The
+    /// effort of a coupling is in place of the torque \[N or N m\].
     Reaction(usize, usize),
     /// Generalized force that a constraint, by its index, exerts along its coordinate.
     Held(usize),
+    /// Generalized force that a coupling, by the index of its joint, exerts along a coordinate, by its
+    /// place in the equation: λ ∂c/∂s \[N or N m\].
+    Share(usize, usize),
     /// Size of a force, by its index: the effort along its coordinate, or a component at its marker.
     Applied(usize, usize),
     /// Kinetic energy of all bodies \[J\].
@@ -30,7 +34,7 @@ impl ForceQuantity {
     /// Returns whether the quantity is known without the reactions of joints.
     #[must_use]
     pub fn needs_reactions(self) -> bool {
-        matches!(self, Self::Reaction(..) | Self::Held(_))
+        matches!(self, Self::Reaction(..) | Self::Share(..) | Self::Held(_))
     }
 
     /// Returns whether the quantity concerns a driver.

@@ -1,6 +1,6 @@
 //! The numbers that [`Forces`](super::Forces) solves.
 
-use crate::mechanism::Mechanism;
+use crate::mechanism::{JointKind, Mechanism};
 
 /// The numbers of one pose: w, and what follows from it.
 #[derive(Debug)]
@@ -13,6 +13,8 @@ pub(super) struct Results {
     pub(super) multipliers: Vec<f64>,
     /// Per joint.
     pub(super) reactions: Vec<[f64; 3]>,
+    /// Per joint, the effort of a coupling along each of its coordinates.
+    pub(super) shares: Vec<Vec<f64>>,
     /// Size of each force.
     pub(super) sizes: Vec<[f64; 3]>,
     /// Kinetic and potential energy \[J\].
@@ -36,8 +38,19 @@ impl Results {
             drivers: vec![DriverForces::default(); mechanism.drivers.len()],
             multipliers: vec![0.0; rows],
             reactions: vec![[0.0; 3]; mechanism.joints.len()],
+            shares: shares(mechanism),
             sizes: vec![[0.0; 3]; mechanism.forces.len()],
             energies: [0.0; 2],
         }
     }
+}
+
+/// Returns a place for each joint's efforts along the coordinates of its equation.
+pub(super) fn shares(mechanism: &Mechanism) -> Vec<Vec<f64>> {
+    let joints = mechanism.joints.iter();
+    let count = joints.map(|joint| match &joint.kind {
+        JointKind::Coupling(equation) => equation.coordinates.len(),
+        _ => 0,
+    });
+    count.map(|count| vec![0.0; count]).collect()
 }

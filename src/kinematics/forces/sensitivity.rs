@@ -9,10 +9,13 @@ use nalgebra::{DMatrix, DVector};
 use super::applied::{Circumstances, Place, about_origin};
 use super::inertial::Masses;
 use super::quantity::ForceQuantity;
+use super::results::shares;
 use super::solve::{ForceParts, Forces, KnownMotion, Loads};
 use super::wrench::{Reported, Wrench};
 use crate::kinematics::analysis::{Direction, Sensitivity};
-use crate::kinematics::constraint::moving_configuration::{Varied, VariedConfiguration};
+use crate::kinematics::constraint::moving_configuration::{
+    CurvesAlong, Varied, VariedConfiguration,
+};
 use crate::kinematics::constraint::{Constraint, Gradient, partial};
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::newton::Rejected;
@@ -20,7 +23,7 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::{Kind, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
-use crate::mechanism::{DriverId, Dual, Load, Mechanism, Number, ParameterId, ProfileAlong};
+use crate::mechanism::{DriverId, Dual, Load, Mechanism, Number, ParameterId};
 
 /// The derivatives of all forces along a direction.
 #[derive(Debug)]
@@ -35,10 +38,12 @@ pub struct ForceSensitivity {
 }
 
 /// Index of the first number of each part.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Places {
     reactions: usize,
     held: usize,
+    /// Per joint.
+    shares: Vec<usize>,
     sizes: usize,
     energies: usize,
 }
@@ -47,17 +52,24 @@ impl Places {
     fn new(mechanism: &Mechanism) -> Self {
         let reactions = 4 * mechanism.drivers.len();
         let held = reactions + 3 * mechanism.joints.len();
-        let sizes = held + mechanism.constraints.len();
+        let mut sizes = held + mechanism.constraints.len();
+        let shares = shares(mechanism).into_iter();
+        let shares = shares.map(|own| {
+            sizes += own.len();
+            sizes - own.len()
+        });
+        let shares = shares.collect();
         Self {
             reactions,
             held,
+            shares,
             sizes,
             energies: sizes + 3 * mechanism.forces.len(),
         }
     }
 
     /// Returns the index of a quantity.
-    fn of(self, quantity: ForceQuantity) -> usize {
+    fn of(&self, quantity: ForceQuantity) -> usize {
         match quantity {
             ForceQuantity::Effort(driver) => 4 * driver.index(),
             ForceQuantity::Power(driver) => 4 * driver.index() + 1,
@@ -65,6 +77,7 @@ impl Places {
             ForceQuantity::Bias(driver) => 4 * driver.index() + 3,
             ForceQuantity::Reaction(joint, component) => self.reactions + 3 * joint + component,
             ForceQuantity::Held(constraint) => self.held + constraint,
+            ForceQuantity::Share(joint, place) => self.shares[joint] + place,
             ForceQuantity::Applied(force, component) => self.sizes + 3 * force + component,
             ForceQuantity::KineticEnergy => self.energies,
             ForceQuantity::PotentialEnergy => self.energies + 1,
@@ -74,7 +87,7 @@ impl Places {
     /// Returns the kind of a number next to a change point. Potential energies and sizes of forces
     /// depend on positions, kinetic energies and inertias on velocities, efforts on accelerations,
     /// and reactions have a pole more.
-    fn kind(self, index: usize) -> Kind {
+    fn kind(&self, index: usize) -> Kind {
         let level = match index {
             _ if index == self.energies => 1,
             _ if index >= self.sizes => 0,
@@ -109,7 +122,7 @@ impl ForceSensitivity {
 /// The mechanism at rest along the direction.
 struct Probe<'a> {
     at: VariedConfiguration,
-    profiles: &'a [ProfileAlong],
+    curves: &'a CurvesAlong,
     gradient: Gradient,
 }
 
@@ -119,12 +132,7 @@ impl Probe<'_> {
         self.gradient.clear();
         relation.gradient(&state.at, &mut self.gradient);
         let columns: Vec<usize> = self.gradient.entries().map(|(column, _)| column).collect();
-        let entry = |column| {
-            (
-                column,
-                partial(relation, &mut self.at, self.profiles, column),
-            )
-        };
+        let entry = |column| (column, partial(relation, &mut self.at, self.curves, column));
         columns.into_iter().map(entry).collect()
     }
 }
@@ -231,7 +239,7 @@ impl Forces {
         }
         let mut probe = Probe {
             at: at.at_rest(),
-            profiles: at.profiles,
+            curves: at.curves,
             gradient: Gradient::new(),
         };
         let (mut demand, sizes, mut potential) =
@@ -270,6 +278,7 @@ impl Forces {
         let mut values: Vec<f64> = drivers.into_iter().flatten().collect();
         values.extend(reactions.flatten());
         values.extend(held.map(|&row| multipliers[row].first()));
+        values.extend(self.varied_shares(system, sensitivity, &multipliers));
         values.extend(sizes.iter().flatten().map(Dual::first));
         values.extend([kinetic.first(), potential.first()]);
         let missing = self.missing_derivative(sensitivity.motion, &masses, &sizes);
@@ -466,7 +475,10 @@ impl Forces {
     ) -> [Dual; 3] {
         let zero = Dual::constant(0.0);
         let joint = &self.mechanism.joints[joint];
-        if Reported::of(&joint.kind) == Reported::Torque {
+        if matches!(
+            Reported::of(&joint.kind),
+            Reported::Torque | Reported::Effort
+        ) {
             let sum = rows.fold(zero, |sum, (_, multiplier)| sum + multiplier);
             return [zero, zero, sum];
         }
@@ -482,6 +494,23 @@ impl Forces {
         let point = at.marker(joint.to).point.map(|component| component.value);
         let origin = body.map_or([zero; 2], |body| origin(body.index()));
         wrench.about([point[0] - origin[0], point[1] - origin[1]])
+    }
+
+    /// Returns the changes of the efforts of couplings along their coordinates.
+    fn varied_shares(
+        &self,
+        system: &System,
+        sensitivity: &Along<'_>,
+        multipliers: &[Dual],
+    ) -> Vec<f64> {
+        let at = sensitivity.motion.mechanism();
+        let couplings = self.rows.couplings(system);
+        let shares = couplings.flat_map(|(joint, row, coupling)| {
+            let places = 0..self.results.shares[joint].len();
+            let at = &at;
+            places.map(move |place| multipliers[row] * coupling.varied_partial(at, place))
+        });
+        shares.map(|share| share.first()).collect()
     }
 
     /// Returns the changes of effort, power, inertia and bias of each driver.

@@ -134,6 +134,7 @@ impl Forces {
             ForceQuantity::Inertia(driver) => found.drivers[driver.index()].inertia,
             ForceQuantity::Bias(driver) => found.drivers[driver.index()].bias,
             ForceQuantity::Reaction(joint, component) => found.reactions[joint][component],
+            ForceQuantity::Share(joint, place) => found.shares[joint][place],
             ForceQuantity::Held(constraint) => found.multipliers[self.rows.constraints[constraint]],
             ForceQuantity::Applied(force, component) => found.sizes[force][component],
             ForceQuantity::KineticEnergy => found.energies[0],
@@ -449,8 +450,15 @@ impl Forces {
         let Results {
             multipliers,
             reactions,
+            shares,
             ..
         } = &mut self.results;
+        for (joint, row, coupling) in self.rows.couplings(&compiled.system) {
+            let partials = coupling.partials(&state.at);
+            for (share, partial) in shares[joint].iter_mut().zip(partials) {
+                *share = multipliers[row] * partial;
+            }
+        }
         let mut held = self.rows.constraints.iter();
         let finite = self
             .rows

@@ -1,7 +1,9 @@
 //! Force and torque that a joint exerts on the body of its second marker.
 
-use crate::kinematics::constraint::Gradient;
+use std::any::Any;
+
 use crate::kinematics::constraint::configuration::{Configuration, perp};
+use crate::kinematics::constraint::{Coupling, Gradient};
 use crate::kinematics::origin::Origin;
 use crate::kinematics::system::System;
 use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number};
@@ -15,6 +17,8 @@ pub enum Reported {
     ForceAndTorque,
     /// A couple.
     Torque,
+    /// The effort of an equation between coordinates, in place of the torque.
+    Effort,
 }
 
 impl Reported {
@@ -39,6 +43,7 @@ impl Reported {
                 ..
             } => Self::ForceAndTorque,
             JointKind::Gear { .. } | JointKind::Belt { .. } => Self::Torque,
+            JointKind::Coupling(_) => Self::Effort,
         }
     }
 
@@ -48,7 +53,7 @@ impl Reported {
         match self {
             Self::Force => component < 2,
             Self::ForceAndTorque => true,
-            Self::Torque => component == 2,
+            Self::Torque | Self::Effort => component == 2,
         }
     }
 }
@@ -118,6 +123,8 @@ pub(super) struct ReactionRows {
     pins: Vec<(usize, [usize; 2])>,
     /// The other joints.
     others: Vec<usize>,
+    /// Those of them that are couplings.
+    couplings: Vec<usize>,
     /// Row of each constraint.
     pub(super) constraints: Vec<usize>,
     /// Row of each driver.
@@ -131,6 +138,7 @@ impl ReactionRows {
             joints: vec![Vec::new(); mechanism.joints.len()],
             pins: Vec::new(),
             others: Vec::new(),
+            couplings: Vec::new(),
             constraints: vec![0; mechanism.constraints.len()],
             drivers: vec![0; mechanism.drivers.len()],
         };
@@ -146,8 +154,23 @@ impl ReactionRows {
                 (JointKind::Revolute, &[x, y]) => rows.pins.push((joint, [x, y])),
                 _ => rows.others.push(joint),
             }
+            if let JointKind::Coupling(_) = definition.kind {
+                rows.couplings.push(joint);
+            }
         }
         rows
+    }
+
+    /// Returns the couplings: the index of the joint, its row and its relation.
+    pub(super) fn couplings<'a>(
+        &'a self,
+        system: &'a System,
+    ) -> impl Iterator<Item = (usize, usize, &'a Coupling)> {
+        self.couplings.iter().filter_map(|&joint| {
+            let row = *self.joints[joint].first()?;
+            let relation: &dyn Any = &*system.equations()[row].constraint;
+            Some((joint, row, relation.downcast_ref()?))
+        })
     }
 
     /// Returns the number of reactions that [`report`](Self::report) writes.
@@ -191,8 +214,8 @@ impl ReactionRows {
         let mechanism = system.mechanism();
         let Joint { kind, to, .. } = &mechanism.joints[joint];
         let rows = &self.joints[joint];
-        if let (JointKind::Gear { .. } | JointKind::Belt { .. }, &[row]) = (kind, &rows[..]) {
-            // The row has the entry one at the second wheel.
+        if let (Reported::Torque | Reported::Effort, &[row]) = (Reported::of(kind), &rows[..]) {
+            // The row has the entry one at the second wheel, or the equation.
             return [0.0, 0.0, multipliers[row]];
         }
         let to = at.marker(*to);

@@ -10,8 +10,8 @@ use crate::kinematics::path::{Path, Rates};
 use crate::kinematics::solver::Solver;
 use crate::kinematics::system::System;
 use crate::mechanism::{
-    COMPONENTS, Coordinate, CoordinateKind, DriverId, Indeterminate, Jet, Load, Mechanism, Order,
-    SUFFIXES, Signal, Unit,
+    COMPONENTS, Coordinate, CoordinateEquation, CoordinateKind, DriverId, Indeterminate, Jet,
+    Joint, JointKind, Load, Mechanism, Order, SUFFIXES, Signal, Unit,
 };
 
 /// A quantity that a run gives, such as `rod.omega`.
@@ -322,6 +322,10 @@ impl List {
             let reported = Reported::of(&joint.kind);
             let body = mechanism.markers[joint.to.index()].body;
             let body = body.map_or("ground", |body| &mechanism.bodies[body.index()].name);
+            if let JointKind::Coupling(equation) = &joint.kind {
+                self.add_efforts(index, joint, equation);
+                continue;
+            }
             for (component, suffix) in Load::COMPONENTS.into_iter().enumerate() {
                 if reported.has(component) {
                     let (word, unit) = match component {
@@ -345,6 +349,28 @@ impl List {
             let description = format!("{word} that constraint `{}` exerts", held.name);
             let (quantity, unit) = (ForceQuantity::Held(index), kind.effort_unit());
             self.add_force(&held.name, "effort", description, quantity, unit);
+        }
+    }
+
+    /// Adds the effort of a coupling, and its efforts along its coordinates.
+    fn add_efforts(&mut self, index: usize, joint: &Joint, equation: &CoordinateEquation) {
+        let name = &joint.name;
+        let description =
+            format!("effort of coupling `{name}`, conjugate to left - right of its equation");
+        let kind = match equation.is_angle {
+            true => CoordinateKind::Angle,
+            false => CoordinateKind::Distance,
+        };
+        let quantity = ForceQuantity::Reaction(index, 2);
+        self.add_force(name, "effort", description, quantity, kind.effort_unit());
+        for (place, (coordinate, Coordinate { kind, .. })) in
+            equation.coordinates.iter().enumerate()
+        {
+            let word = kind.effort_word();
+            let description = format!("{word} that coupling `{name}` exerts along `{coordinate}`");
+            let owner = format!("{name}.{coordinate}");
+            let quantity = ForceQuantity::Share(index, place);
+            self.add_force(&owner, "effort", description, quantity, kind.effort_unit());
         }
     }
 

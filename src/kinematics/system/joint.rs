@@ -2,22 +2,25 @@
 
 use crate::kinematics::Origin;
 use crate::kinematics::constraint::configuration::{
-    CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId,
+    CamProfile, Coefficient, CoefficientId, CouplingLaw, JointUnknownId, LawId, ProfileId,
 };
 use crate::kinematics::constraint::{
-    Axis, Coincidence, Constraint, Contour, Coupling, FlatContact, FlatFace, JointUnknown,
-    KnifeEdge, RackAndPinion, Roller, RollerContact, of_coordinate,
+    Axis, Coincidence, Constraint, Contour, CoordinateRelation, CoupledExpression, CoupledFunction,
+    Coupling, Dimension, FlatContact, FlatFace, JointUnknown, KnifeEdge, RackAndPinion, Roller,
+    RollerContact, WheelPair, of_coordinate,
 };
 use crate::mechanism::{
-    BodyId, CamFollower, Coordinate, CoordinateKind, Expression, Joint, JointKind, Mechanism,
-    ParameterId, Profile, ProfileInForce, RackSide, WheelSizes,
+    BodyId, CamFollower, Coordinate, CoordinateEquation, CoordinateKind, Expression, Joint,
+    JointKind, LinearForm, Mechanism, Motion, MotionInForce, ParameterId, Profile, ProfileInForce,
+    RackSide, WheelSizes,
 };
 
-/// Coefficients, profiles and unknowns of joints.
+/// Coefficients, profiles, laws and unknowns of joints.
 #[derive(Debug, Default)]
 pub(super) struct JointParts {
     pub(super) coefficients: Vec<Coefficient>,
     pub(super) profiles: Vec<CamProfile>,
+    pub(super) laws: Vec<CouplingLaw>,
     /// The joint unknowns, behind those of the bodies, each with its joint.
     pub(super) unknowns: Vec<(Origin, Box<dyn JointUnknown>)>,
     /// Parameters of the joint whose equations are being written down.
@@ -52,6 +55,19 @@ impl JointParts {
             what: what.into(),
         });
         ProfileId(self.profiles.len() - 1)
+    }
+
+    /// Adds the law of a coupling.
+    fn law(&mut self, law: &Motion, mechanism: &Mechanism, what: String) -> LawId {
+        self.parameters.extend(law.parameters());
+        let parameters = mechanism.parameters.len();
+        self.laws.push(CouplingLaw {
+            law: law.clone(),
+            in_force: MotionInForce::new(law, parameters),
+            enclosed: MotionInForce::new(law, parameters),
+            what,
+        });
+        LawId(self.laws.len() - 1)
     }
 
     /// Returns the id of the next joint unknown.
@@ -126,6 +142,11 @@ pub(super) fn relations(
                 (height, radius.clone()),
             ]
         }
+        JointKind::Coupling(equation) => {
+            let what = origin.describe(mechanism);
+            let coupling = coupling(mechanism, equation, &what, parts);
+            vec![(Box::new(coupling), zero())]
+        }
         JointKind::Cam { follower, profile } => {
             let profile = parts.profile(profile, mechanism, origin.describe(mechanism));
             let contour = Contour {
@@ -190,6 +211,46 @@ fn roll(
     })
 }
 
+/// Returns the relation of an equation between coordinates.
+fn coupling(
+    mechanism: &Mechanism,
+    equation: &CoordinateEquation,
+    what: &str,
+    parts: &mut JointParts,
+) -> Coupling {
+    let coordinates = equation.coordinates.iter();
+    let coordinates: Vec<_> = coordinates
+        .map(|(_, coordinate)| CoordinateRelation::of(coordinate))
+        .collect();
+    let function = match equation.difference.linear_form(coordinates.len()) {
+        Some(LinearForm { factors, rest }) => CoupledFunction::Linear {
+            is_fixed: factors
+                .iter()
+                .all(|factor| factor.literal().is_some_and(|literal| literal != 0.0)),
+            factors: factors
+                .iter()
+                .map(|factor| parts.coefficient(factor, what))
+                .collect(),
+            rest: parts.coefficient(&rest, what),
+        },
+        None => CoupledFunction::Expression(CoupledExpression {
+            expression: equation.difference.clone(),
+            parameters: (equation.difference.parameters())
+                .map(|id| (id, parts.coefficient(&Expression::parameter(id), what)))
+                .collect(),
+            law: (equation.law.as_ref()).map(|law| parts.law(law, mechanism, what.to_owned())),
+        }),
+    };
+    Coupling {
+        coordinates,
+        function,
+        dimension: match equation.is_angle {
+            true => Dimension::Angle,
+            false => Dimension::Length,
+        },
+    }
+}
+
 /// Returns the relation of two wheels that turn in a fixed ratio.
 fn couple(
     joint: &Joint,
@@ -200,7 +261,7 @@ fn couple(
 ) -> (Box<dyn Constraint>, Expression) {
     let what = format!("a wheel's size in joint `{}`", joint.name);
     let [first, second] = sizes.expressions();
-    let coupling = Coupling {
+    let pair = WheelPair {
         from: joint.from,
         to: joint.to,
         carrier,
@@ -210,5 +271,5 @@ fn couple(
         ],
         opposite,
     };
-    (Box::new(coupling), Expression::constant(0.0))
+    (Box::new(pair), Expression::constant(0.0))
 }

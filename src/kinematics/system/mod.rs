@@ -20,7 +20,7 @@ use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, Turn
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    DriverId, Expression, Jet, Mechanism, Motion, MovingProfile, Number, ParameterId,
+    DriverId, Expression, Jet, Mechanism, Motion, MotionInForce, MovingProfile, Number, ParameterId,
 };
 
 /// The target of c(q).
@@ -207,7 +207,10 @@ impl System {
         Configuration::new(
             &self.mechanism,
             self.joint_parts.coefficients.len(),
-            self.joint_parts.profiles.clone(),
+            (
+                self.joint_parts.profiles.clone(),
+                self.joint_parts.laws.clone(),
+            ),
             self.joint_parts.unknowns.len(),
         )
     }
@@ -250,6 +253,15 @@ impl System {
     pub(in crate::kinematics) fn moving_profiles(&self) -> Vec<MovingProfile> {
         let profiles = self.joint_parts.profiles.iter();
         profiles.map(|profile| profile.in_force.moving()).collect()
+    }
+
+    /// Makes the laws of all couplings on another type of numbers; their parameters are still to be
+    /// set.
+    pub(in crate::kinematics) fn laws<N: Number>(&self) -> Vec<MotionInForce<N>> {
+        let laws = self.joint_parts.laws.iter();
+        let parameters = self.mechanism.parameters.len();
+        laws.map(|own| MotionInForce::new(&own.law, parameters))
+            .collect()
     }
 
     /// Makes targets; [`set_parameters`](Self::set_parameters) gives them their values.

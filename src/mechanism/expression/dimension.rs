@@ -51,8 +51,18 @@ impl<'a> Dimensions<'a> {
             "mm" | "cm" | "inch" => Dimension::LENGTH,
             _ => Dimension::ONE,
         };
+        self.set(dimension);
+    }
+
+    /// Gives the operand parsed last a dimension.
+    pub(super) fn set(&mut self, dimension: Dimension) {
+        self.replace(Some(dimension));
+    }
+
+    /// Gives the operand parsed last a dimension, or none that is known.
+    pub(super) fn replace(&mut self, dimension: Known) {
         if let Some(last) = self.waiting.last_mut() {
-            *last = Some(dimension);
+            *last = dimension;
         }
     }
 

@@ -241,7 +241,7 @@ impl Operation {
         let mut stack = [a, b];
         let mut height = self.arity();
         // Neither parameters nor variables have operands.
-        self.apply(&mut stack, &mut height, &|_| a, &|_| a);
+        self.apply(&mut stack, &mut height, &(&|_| a, &|_| a));
         stack[0]
     }
 }

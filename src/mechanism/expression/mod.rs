@@ -4,13 +4,15 @@
 //! constants `pi deg rpm mm cm inch`, parameters, the functions `sin cos tan asin acos atan atan2
 //! sinh cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and variables: time `t`
 //! in a motion, the polar angle `theta` in a cam's profile, `t`, `position` and `velocity` in a
-//! force, signals such as `crank.omega` in a measure. Powers bind tighter than a sign and
-//! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
+//! force, signals such as `crank.omega` in a measure, coordinates and the function `law` in a
+//! coupling, whose law is a function of `x`. Powers bind tighter than a sign and associate to the
+//! right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod dimension;
 mod error;
 mod function;
 mod in_force;
+mod linear;
 mod parse;
 mod pieces;
 mod polar;
@@ -26,7 +28,8 @@ pub(super) use function::CONSTANTS;
 #[cfg(feature = "page")]
 pub(crate) use function::constant;
 pub(super) use in_force::ExpressionInForce;
-pub(super) use parse::{Scope, SignalNames};
+pub use linear::LinearForm;
+pub(super) use parse::{LawOfCoupling, MovingNames, Parsed, Scope};
 pub(super) use pieces::MOST_SWITCHES;
 pub(super) use reserved::is_taken;
 #[cfg(feature = "cli")]
@@ -48,6 +51,10 @@ pub enum Variable {
     Velocity,
     /// A signal of the mechanism, in a measure that is computed.
     Signal(Signal, Order),
+    /// A coordinate of a coupling, by its place among these.
+    Coordinate(usize),
+    /// The argument of a coupling's law, `x` there.
+    Argument,
 }
 
 impl Variable {
@@ -60,7 +67,36 @@ impl Variable {
             Self::Position => "position",
             Self::Velocity => "velocity",
             Self::Signal(..) => "a signal",
+            Self::Coordinate(_) => "a coordinate",
+            Self::Argument => "x",
         }
+    }
+}
+
+/// What an expression takes from outside, on numbers of type N.
+pub(crate) trait Values<N> {
+    /// Returns the value of a parameter.
+    fn parameter(&self, id: ParameterId) -> N;
+
+    /// Returns the value of a variable.
+    fn variable(&self, which: Variable) -> N;
+
+    /// Returns the table of a coupling's law at an argument.
+    fn law(&self, argument: N) -> N;
+}
+
+/// Parameters and variables, where there is no law.
+impl<N: Number, P: Fn(ParameterId) -> N, V: Fn(Variable) -> N> Values<N> for (&P, &V) {
+    fn parameter(&self, id: ParameterId) -> N {
+        self.0(id)
+    }
+
+    fn variable(&self, which: Variable) -> N {
+        self.1(which)
+    }
+
+    fn law(&self, _argument: N) -> N {
+        N::unknown()
     }
 }
 
@@ -98,6 +134,8 @@ enum Operation {
     Power,
     Unary(Unary),
     Binary(Binary),
+    /// The table of a coupling's law.
+    Law,
 }
 
 impl Operation {
@@ -105,7 +143,7 @@ impl Operation {
     fn arity(self) -> usize {
         match self {
             Self::Number(_) | Self::Parameter(_) | Self::Variable(_) => 0,
-            Self::Negate | Self::Unary(_) => 1,
+            Self::Negate | Self::Unary(_) | Self::Law => 1,
             Self::Add
             | Self::Subtract
             | Self::Multiply
@@ -117,18 +155,12 @@ impl Operation {
 
     /// Takes the operands from the top of `stack` and leaves the result there.
     #[inline]
-    fn apply<N: Number>(
-        self,
-        stack: &mut [N],
-        height: &mut usize,
-        parameter: &impl Fn(ParameterId) -> N,
-        variable: &impl Fn(Variable) -> N,
-    ) {
+    fn apply<N: Number>(self, stack: &mut [N], height: &mut usize, values: &impl Values<N>) {
         let first = *height - self.arity();
         let result = match self {
             Self::Number(value) => N::constant(value),
-            Self::Parameter(id) => parameter(id),
-            Self::Variable(which) => variable(which),
+            Self::Parameter(id) => values.parameter(id),
+            Self::Variable(which) => values.variable(which),
             Self::Negate => -stack[first],
             Self::Add => stack[first] + stack[first + 1],
             Self::Subtract => stack[first] - stack[first + 1],
@@ -137,6 +169,7 @@ impl Operation {
             Self::Power => stack[first].powf(stack[first + 1]),
             Self::Unary(function) => stack[first].apply(function),
             Self::Binary(function) => function.apply(stack[first], stack[first + 1]),
+            Self::Law => values.law(stack[first]),
         };
         stack[first] = result;
         *height = first + 1;
@@ -148,6 +181,12 @@ impl Expression {
     #[must_use]
     pub fn constant(value: f64) -> Self {
         Self::new(vec![Operation::Number(value)])
+    }
+
+    /// Makes the value of a parameter.
+    #[must_use]
+    pub fn parameter(id: ParameterId) -> Self {
+        Self::new(vec![Operation::Parameter(id)])
     }
 
     /// Makes the multiple of a variable.
@@ -204,14 +243,19 @@ impl Expression {
         parameter: &impl Fn(ParameterId) -> N,
         variable: &impl Fn(Variable) -> N,
     ) -> N {
+        self.evaluate_with(&(parameter, variable))
+    }
+
+    /// Evaluates the expression for all that it may take from outside.
+    ///
+    /// Outside the domain of a function the result is not finite. Allocates nothing.
+    pub(crate) fn evaluate_with<N: Number>(&self, values: &impl Values<N>) -> N {
         match *self.program {
             // Most numbers of a mechanism are one of these two.
             [Operation::Number(value)] => N::constant(value),
-            [Operation::Parameter(id)] => parameter(id),
-            _ if self.height <= USUAL_STACK => {
-                run::<N, USUAL_STACK>(&self.program, parameter, variable)
-            }
-            _ => run::<N, MAX_STACK>(&self.program, parameter, variable),
+            [Operation::Parameter(id)] => values.parameter(id),
+            _ if self.height <= USUAL_STACK => run::<N, USUAL_STACK>(&self.program, values),
+            _ => run::<N, MAX_STACK>(&self.program, values),
         }
     }
 
@@ -281,6 +325,18 @@ impl Expression {
         self.program.contains(&Operation::Variable(variable))
     }
 
+    /// Returns the expression with each coordinate's place in `places` as its place.
+    pub(in crate::mechanism) fn with_coordinates(mut self, places: &[usize]) -> Self {
+        for operation in &mut self.program {
+            if let Operation::Variable(Variable::Coordinate(place)) = operation
+                && let Some(new) = places.iter().position(|known| known == place)
+            {
+                *place = new;
+            }
+        }
+        self
+    }
+
     /// Returns the value if it uses neither parameters nor a variable.
     #[must_use]
     pub fn literal(&self) -> Option<f64> {
@@ -292,15 +348,11 @@ impl Expression {
 }
 
 /// Runs a program that leaves one operand and never has more than `STACK` waiting.
-fn run<N: Number, const STACK: usize>(
-    program: &[Operation],
-    parameter: &impl Fn(ParameterId) -> N,
-    variable: &impl Fn(Variable) -> N,
-) -> N {
+fn run<N: Number, const STACK: usize>(program: &[Operation], values: &impl Values<N>) -> N {
     let mut stack = [N::constant(0.0); STACK];
     let mut height = 0;
     for operation in program {
-        operation.apply(&mut stack, &mut height, parameter, variable);
+        operation.apply(&mut stack, &mut height, values);
     }
     stack[0]
 }

@@ -10,6 +10,9 @@ use crate::mechanism::names::{self, NameTable};
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Dimension, ParameterId, Span};
 
+/// Name by which an equation calls the law of its coupling.
+const LAW: &str = "law";
+
 /// Largest depth of the parser's recursion: nested parentheses, signs, powers and operators.
 const MAX_DEPTH: usize = 128;
 
@@ -20,22 +23,33 @@ pub(in crate::mechanism) struct Scope<'a> {
     pub(in crate::mechanism) parameters: &'a NameTable<'a, ParameterId>,
     /// Variables that the expression may use.
     pub(in crate::mechanism) variables: &'a [Variable],
-    /// Signals that it may use.
-    pub(in crate::mechanism) signals: Option<&'a SignalNames<'a>>,
+    /// Moving quantities that it may use.
+    pub(in crate::mechanism) moving: Option<&'a MovingNames<'a>>,
 }
 
-/// Names in the formula of a computed measure.
+/// Names of moving quantities in the formula of a computed measure or in the equation of a coupling.
 #[derive(Debug)]
-pub(in crate::mechanism) struct SignalNames<'a> {
-    /// Signals, by the names of their FMU variables.
+pub(in crate::mechanism) struct MovingNames<'a> {
+    /// Their meanings: signals by the names of their FMU variables, or coordinates.
     pub(in crate::mechanism) known: NameTable<'a, Variable>,
+    /// Dimensions of coordinates.
+    pub(in crate::mechanism) dimensions: Vec<Dimension>,
     /// Computed measures, which no formula can use.
     pub(in crate::mechanism) computed: Vec<&'a str>,
+    /// Says which names can be used.
+    pub(in crate::mechanism) usable: &'static str,
+    /// The coupling's law.
+    pub(in crate::mechanism) law: Option<LawOfCoupling<'a>>,
 }
 
-/// Says which names a computed measure may use.
-const USABLE: &str = "a measure may use parameters and the variables of bodies, markers, drivers \
-                      and measures with a coordinate";
+/// A law that an equation calls as a function of one argument.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::mechanism) enum LawOfCoupling<'a> {
+    /// An expression in `x`, and its dimension.
+    Expression(&'a Expression, Option<Dimension>),
+    /// A table.
+    Table,
+}
 
 /// An expression with its dimension.
 pub(in crate::mechanism) struct Parsed {
@@ -79,13 +93,46 @@ impl Expression {
         }
         parser.parse_operators(0)?;
         parser.expect_end()?;
-        Ok(Parsed {
-            expression: Self::new(parser.program),
-            dimension: parser.dimensions.result(),
-            clash: parser.dimensions.clash,
-        })
+        Ok(parser.finish())
+    }
+
+    /// Parses the equation `left = right`; the expression is left − right, the dimension that of the
+    /// side that has one.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`parse`](Self::parse), and a text without exactly one `=`.
+    pub(in crate::mechanism) fn parse_equation(
+        text: &str,
+        scope: Scope<'_>,
+        dimensions: &[Option<Dimension>],
+    ) -> Result<Parsed, ExpressionError> {
+        let mut parser = Parser::new(text, scope, dimensions)?;
+        let mut span = parser.parse_operators(0)?;
+        let left = parser.dimensions.result();
+        if parser.token.kind != TokenKind::Symbol(b'=') {
+            parser.expect_end()?;
+            let message = "an equation has two sides";
+            return Err(ExpressionError::new(span, message).help(EQUATION));
+        }
+        parser.advance()?;
+        span.end = parser.parse_operators(0)?.end;
+        let right = parser.dimensions.result();
+        if parser.token.kind == TokenKind::Symbol(b'=') {
+            let message = "an equation has one `=`";
+            return Err(ExpressionError::new(parser.token.span(), message).help(EQUATION));
+        }
+        parser.expect_end()?;
+        parser.emit(Operation::Subtract, &span)?;
+        let mut parsed = parser.finish();
+        let is_known = |side: &Option<Dimension>| side.is_some_and(|of| of != Dimension::ONE);
+        parsed.dimension = [left, right].into_iter().find(is_known).flatten();
+        Ok(parsed)
     }
 }
+
+/// Help for a text that is no equation.
+const EQUATION: &str = "write `left = right`, such as \"travel = pitch*turn/(2*pi)\"";
 
 /// Binding of a sign: tighter than a product, looser than a power.
 const SIGN: u8 = 5;
@@ -136,6 +183,15 @@ impl<'a> Parser<'a> {
             height: 0,
             depth: 0,
         })
+    }
+
+    /// Returns the expression of all that has been parsed.
+    fn finish(self) -> Parsed {
+        Parsed {
+            expression: Expression::new(self.program),
+            dimension: self.dimensions.result(),
+            clash: self.dimensions.clash,
+        }
     }
 
     /// Takes the next token.
@@ -199,7 +255,13 @@ impl<'a> Parser<'a> {
     fn parse_name(&mut self, name: &str, span: Span) -> Result<Span, ExpressionError> {
         let called = self.token.kind == TokenKind::Symbol(b'(');
         let constant = constant(name);
-        let operation = if let Some(function) = function(name) {
+        let operation = if let (true, Some(law)) = (name == LAW, self.law()) {
+            if called {
+                return self.parse_law(law, span);
+            }
+            return Err(ExpressionError::new(span, format!("`{LAW}` is a function"))
+                .help(format!("write `{LAW}(…)` with a coordinate in it")));
+        } else if let Some(function) = function(name) {
             if called {
                 return self.parse_call(function, name, span);
             }
@@ -229,6 +291,10 @@ impl<'a> Parser<'a> {
         self.emit(operation, &span)?;
         if constant.is_some() {
             self.dimensions.set_constant(name);
+        } else if let (Operation::Variable(Variable::Coordinate(place)), Some(moving)) =
+            (operation, self.scope.moving)
+        {
+            self.dimensions.set(moving.dimensions[place]);
         }
         Ok(span)
     }
@@ -236,7 +302,38 @@ impl<'a> Parser<'a> {
     fn variable(&self, name: &str) -> Option<Variable> {
         let mut variables = self.scope.variables.iter().copied();
         let variable = variables.find(|variable| variable.name() == name);
-        variable.or_else(|| self.scope.signals?.known.get(name))
+        variable.or_else(|| self.scope.moving?.known.get(name))
+    }
+
+    fn law(&self) -> Option<LawOfCoupling<'a>> {
+        self.scope.moving?.law
+    }
+
+    /// Parses the argument of the law, whose name stands at `place`.
+    fn parse_law(&mut self, law: LawOfCoupling<'_>, place: Span) -> Result<Span, ExpressionError> {
+        let open = self.advance()?;
+        let start = self.program.len();
+        self.parse_operators(0)?;
+        let span = place.start..self.expect_close(&open)?.end;
+        match law {
+            LawOfCoupling::Table => self.emit(Operation::Law, &span)?,
+            LawOfCoupling::Expression(law, dimension) => {
+                // The argument takes the place of the variable.
+                let argument = self.program.split_off(start);
+                for &operation in &law.program {
+                    match operation {
+                        Operation::Variable(_) => self.program.extend_from_slice(&argument),
+                        _ => self.program.push(operation),
+                    }
+                }
+                let height = self.height + law.height + argument.len();
+                if height > MAX_STACK && Expression::new(self.program.clone()).height > MAX_STACK {
+                    return Err(self.nested_too_deeply());
+                }
+                self.dimensions.replace(dimension);
+            }
+        }
+        Ok(span)
     }
 
     /// Parses the arguments of a function called `name`, which stands at `place`.
@@ -301,7 +398,7 @@ impl<'a> Parser<'a> {
         }
         if arity > 0 && constant {
             let value =
-                run::<f64, MAX_STACK>(&self.program[operands..], &|_| f64::NAN, &|_| f64::NAN);
+                run::<f64, MAX_STACK>(&self.program[operands..], &(&|_| f64::NAN, &|_| f64::NAN));
             if !value.is_finite() {
                 let text = quoted(&self.text[span.clone()]);
                 return Err(ExpressionError::new(
@@ -344,6 +441,9 @@ impl<'a> Parser<'a> {
             self.token.span(),
             format!("expected an operator, found {}", quoted(found)),
         );
+        if found == "=" {
+            return error.help("only the `equation` of a coupling has a `=`");
+        }
         if !self.token.starts_operand() {
             return error.help("the decimal mark is a point");
         }
@@ -407,25 +507,33 @@ impl<'a> Parser<'a> {
             };
         }
         let is_computed = |name| {
-            let signals = self.scope.signals;
-            signals.is_some_and(|signals| signals.computed.contains(&name))
+            let moving = self.scope.moving;
+            moving.is_some_and(|moving| moving.computed.contains(&name))
         };
         let owner = name.split_once('.').map_or(name, |(owner, _)| owner);
+        let usable = self.scope.moving.map_or("", |moving| moving.usable);
         if is_computed(owner) {
             let message = format!("{} is a computed measure", quoted(owner));
-            let help = format!("write its formula here; {USABLE}");
+            let help = format!("write its formula here; {usable}");
             return ExpressionError::new(span, message).help(help);
         }
         if name.contains('.') {
             let error = ExpressionError::new(span, format!("no variable {}", quoted(name)));
-            let Some(signals) = self.scope.signals else {
+            let Some(moving) = self.scope.moving else {
                 return error.help("only the `value` of a measure may use variables that move");
             };
-            let near = signals.known.near(name, &[]);
-            let help = near.or_else(|| signals.known.of_same_owner(name));
-            return error.help(help.unwrap_or_else(|| USABLE.to_owned()));
+            let is_coordinate = moving.known.get(owner).is_some();
+            let own = is_coordinate.then(|| format!("did you mean `{owner}`?"));
+            let near = || moving.known.near(name, &[]);
+            let help = own.or_else(near);
+            let help = help.or_else(|| moving.known.of_same_owner(name));
+            return error.help(help.unwrap_or_else(|| usable.to_owned()));
         }
-        let error = ExpressionError::new(span, format!("no parameter {}", quoted(name)));
+        let nouns = match self.scope.moving {
+            Some(moving) if !moving.dimensions.is_empty() => "parameter, driver or measure",
+            _ => "parameter",
+        };
+        let error = ExpressionError::new(span, format!("no {nouns} {}", quoted(name)));
         if name == Variable::PolarAngle.name() {
             return error.help("only a cam's `profile` may use `theta`, its polar angle");
         }
@@ -440,15 +548,22 @@ impl<'a> Parser<'a> {
         let constants = CONSTANTS.map(|(constant, _)| constant);
         // A measure, a driver or a body without its quantity.
         let moving = || {
-            let signals = self.scope.signals?;
+            let moving = self.scope.moving?;
             let mut full = ["position", "phi"]
                 .map(|part| format!("{name}.{part}"))
                 .into_iter();
-            let full = full.find(|full| signals.known.get(full).is_some())?;
+            let full = full.find(|full| moving.known.get(full).is_some())?;
             Some(format!("did you mean `{full}`?"))
         };
         let taken = || self.taken_help(name);
-        let near = || self.scope.parameters.near(name, &constants);
+        let near = || {
+            let near = self.scope.parameters.near(name, &constants);
+            let coordinates = self
+                .scope
+                .moving
+                .filter(|moving| !moving.dimensions.is_empty());
+            near.or_else(|| coordinates?.known.near(name, &[]))
+        };
         let help = self.unit_help(name).or_else(moving).or_else(taken);
         let help = help.or_else(near);
         error.help(help.unwrap_or_else(|| "give it a value in `[parameters]`".to_owned()))

@@ -5,7 +5,7 @@
 //! switch; whether the pieces join smoothly is not examined here.
 
 use super::function::Binary;
-use super::{Expression, MAX_STACK, Operation};
+use super::{Expression, MAX_STACK, Operation, Values};
 use crate::mechanism::ParameterId;
 use crate::mechanism::number::{Interval, Jet3, Number, Taylor, Unary};
 
@@ -37,10 +37,19 @@ impl Expression {
         };
         let mut parts = (0..PARTS).map(|part| {
             let variable = Jet3::variable(Interval::new(end(part), end(part + 1)));
-            self.hull_of_pieces(&parameter, variable, Some(MOST_SWITCHES))
+            self.hull_of_pieces(&(&parameter, &|_| variable), Some(MOST_SWITCHES))
         });
         let first = parts.next().flatten();
         parts.fold(first, |hull, part| Some(hull?.hull(part?)))
+    }
+
+    /// Encloses the result for these numbers on each piece that may be in force: derivatives are
+    /// those of all sides of a switch. `None` without bounds. Allocates nothing.
+    pub(crate) fn enclose_all_pieces(
+        &self,
+        values: &impl Values<Jet3<Interval>>,
+    ) -> Option<Jet3<Interval>> {
+        self.hull_of_pieces(values, Some(MOST_SWITCHES))
     }
 
     /// Encloses the result for these numbers on each piece that may be in force, of the first
@@ -48,12 +57,11 @@ impl Expression {
     /// one step, or pieces meet without any `switches`. Allocates nothing.
     pub(in crate::mechanism) fn hull_of_pieces<N: Piece>(
         &self,
-        parameter: &impl Fn(ParameterId) -> N,
-        variable: N,
+        values: &impl Values<N>,
         switches: Option<u32>,
     ) -> Option<N> {
         let stack = [N::constant(0.0); MAX_STACK];
-        run_pieces(&self.program, (stack, 0), parameter, variable, switches)
+        run_pieces(&self.program, (stack, 0), values, switches)
     }
 }
 
@@ -118,8 +126,7 @@ impl Piece for Taylor<Jet3<Interval>, 1> {
 fn run_pieces<N: Piece>(
     program: &[Operation],
     (mut stack, mut height): ([N; MAX_STACK], usize),
-    parameter: &impl Fn(ParameterId) -> N,
-    variable: N,
+    values: &impl Values<N>,
     switches: Option<u32>,
 ) -> Option<N> {
     for (index, operation) in program.iter().enumerate() {
@@ -135,11 +142,11 @@ fn run_pieces<N: Piece>(
                 stack[first] = piece;
                 let rest = &program[index + 1..];
                 let state = (stack, first + 1);
-                run_pieces(rest, state, parameter, variable, Some(switches))
+                run_pieces(rest, state, values, Some(switches))
             });
             return Some(one?.hull(other?));
         }
-        operation.apply(&mut stack, &mut height, parameter, &|_| variable);
+        operation.apply(&mut stack, &mut height, values);
     }
     stack[0].is_bounded().then_some(stack[0])
 }

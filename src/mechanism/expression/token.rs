@@ -9,7 +9,7 @@ pub(super) enum TokenKind<'a> {
     Number(f64),
     /// A name, or names joined by points, such as `crank.omega`.
     Name(&'a str),
-    /// One of `+ - * / ^ ( ) ,`.
+    /// One of `+ - * / ^ ( ) , =`.
     Symbol(u8),
     End,
 }
@@ -50,7 +50,7 @@ pub(super) fn scan(text: &str, from: usize) -> Result<Token<'_>, ExpressionError
     };
     let digit_follows = bytes.get(start + 1).is_some_and(u8::is_ascii_digit);
     let (kind, end) = match first {
-        b'+' | b'-' | b'*' | b'/' | b'^' | b'(' | b')' | b',' => {
+        b'+' | b'-' | b'*' | b'/' | b'^' | b'(' | b')' | b',' | b'=' => {
             (TokenKind::Symbol(first), start + 1)
         }
         b'a'..=b'z' | b'A'..=b'Z' | b'_' => {

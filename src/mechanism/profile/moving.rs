@@ -112,7 +112,8 @@ impl MovingProfile {
         type WithSlope = Taylor<Enclosed, 1>;
         let parameter = |p: ParameterId| WithSlope::fixed(self.parameters[p.index()]);
         let hull = |switches| {
-            let hull = expression.hull_of_pieces(&parameter, WithSlope::variable(theta), switches);
+            let theta = |_| WithSlope::variable(theta);
+            let hull = expression.hull_of_pieces(&(&parameter, &theta), switches);
             hull.map(|radius| [radius.value, radius.first()])
         };
         let on_one = hull(None);

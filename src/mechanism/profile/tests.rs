@@ -32,7 +32,7 @@ fn contour(text: &str) -> ProfileInForce {
     let scope = Scope {
         parameters: &NameTable::new(),
         variables: &[Variable::PolarAngle],
-        signals: None,
+        moving: None,
     };
     let expression = Expression::parse(text, scope).expect("it parses");
     let mut profile = ProfileInForce::new(&Profile::Expression(expression), 0);

@@ -9,7 +9,8 @@ use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{
-    BodyId, Diagnostic, Dimension, Label, MarkerId, ParameterId, Severity, Source, Span, TableFile,
+    BodyId, Coordinate, Diagnostic, Dimension, Label, MarkerId, ParameterId, Severity, Source,
+    Span, TableFile,
 };
 
 /// Most problems that are shown; the others are counted. A file of garbage would make a million.
@@ -46,6 +47,10 @@ pub(super) struct Context<'a> {
     /// Moving bodies.
     pub(super) bodies: NameTable<'a, BodyId>,
     pub(super) body_names: Vec<&'a str>,
+    /// Coordinates of drivers and measures.
+    pub(super) coordinates: Vec<(&'a str, Coordinate)>,
+    /// Names of computed measures.
+    pub(super) computed: Vec<&'a str>,
     /// Joints, then constraints, by their places among these.
     pub(super) holders: NameTable<'a, usize>,
     /// Numbers of joints and of constraints.
@@ -76,6 +81,8 @@ impl<'a> Context<'a> {
             parameters_used: Vec::new(),
             bodies: NameTable::new(),
             body_names: Vec::new(),
+            coordinates: Vec::new(),
+            computed: Vec::new(),
             holders: NameTable::new(),
             holder_counts: [0; 2],
             markers: Vec::new(),

@@ -4,7 +4,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::{Constraint, Coordinate, CoordinateKind, MarkerId, Measure};
 
 use super::context::Context;
-use super::kind::{Entry, Text, Word};
+use super::kind::{Entry, Text, Word, word_here};
 use super::number::{Limit, NUMBER, Quantity};
 use super::reference::{MARKERS, MarkerName, MarkerPair};
 use super::table::table;
@@ -47,8 +47,8 @@ const COORDINATE: Word<CoordinateKind> = Word::new("coordinate", code::UNKNOWN_C
     ]
 })
 .with_synonyms(|text| match text.to_ascii_lowercase().as_str() {
-    "rotation" | "phi" => Some("angle"),
-    "length" => Some("distance"),
+    "rotation" | "phi" => Some(word_here("angle")),
+    "length" => Some(word_here("distance")),
     _ => None,
 });
 

@@ -1,6 +1,6 @@
 //! Measures that are computed from others.
 
-use crate::mechanism::expression::SignalNames;
+use crate::mechanism::expression::MovingNames;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{DerivedMeasure, Mechanism, Unit, Variable};
 
@@ -67,9 +67,13 @@ impl<'a> Context<'a> {
             let variable = Variable::Signal(*signal, *order);
             (name.as_str(), variable)
         });
-        let signals = SignalNames {
+        let signals = MovingNames {
             known: signals.collect(),
+            dimensions: Vec::new(),
             computed: entries.iter().map(|entry| entry.name()).collect(),
+            usable: "a measure may use parameters and the variables of bodies, markers, drivers and \
+                     measures with a coordinate",
+            law: None,
         };
         let read = |entry: &Entry<'a>| {
             let keys = self.entry::<DerivedKeys<'a>>(*entry, "measure")?;

@@ -151,6 +151,11 @@ impl<'a> Kind<'a> for Flag {
     schema! {{ "type": "boolean" }}
 }
 
+/// Returns help for another term for a word.
+pub(super) fn word_here(word: &str) -> String {
+    format!("the word for it here is `{word}`")
+}
+
 /// Choice among words.
 pub(super) struct Word<T> {
     /// Name of what is chosen: "coordinate".
@@ -159,8 +164,8 @@ pub(super) struct Word<T> {
     code: &'static str,
     /// Returns the words with their meanings.
     words: fn() -> Vec<(&'static str, T)>,
-    /// Returns the word that another term stands for.
-    synonym: fn(&str) -> Option<&'static str>,
+    /// Returns help for another term.
+    synonym: fn(&str) -> Option<String>,
 }
 
 impl<T> Word<T> {
@@ -178,7 +183,7 @@ impl<T> Word<T> {
     }
 
     /// Returns the choice with other terms for its words, which messages explain.
-    pub(super) const fn with_synonyms(self, synonym: fn(&str) -> Option<&'static str>) -> Self {
+    pub(super) const fn with_synonyms(self, synonym: fn(&str) -> Option<String>) -> Self {
         Self { synonym, ..self }
     }
 
@@ -195,10 +200,7 @@ impl<'a, T> Kind<'a> for Word<T> {
         let meaning = (self.words)().into_iter().find(|(word, _)| *word == text);
         if meaning.is_none() {
             let message = format!("no {} {}", self.noun, quoted(text));
-            let help = match (self.synonym)(text) {
-                Some(word) => Some(format!("the word for it here is `{word}`")),
-                None => names::help(text, &self.names(), &[]),
-            };
+            let help = (self.synonym)(text).or_else(|| names::help(text, &self.names(), &[]));
             context.error(self.code, item.span(), message).help = help;
         }
         meaning.map(|(_, meaning)| meaning)

@@ -126,6 +126,9 @@ impl<'a> Context<'a> {
             true => None,
             false => context.measure(entry),
         };
+        let measures = self.each(&root.measures, measure);
+        let sections = [&root.drivers, &root.freedoms, &root.measures];
+        self.declare_coordinates(sections, &drivers, &measures);
         let mut mechanism = Mechanism {
             name: root.name.value.unwrap_or_default(),
             description: root.description.value.unwrap_or_default(),
@@ -140,7 +143,7 @@ impl<'a> Context<'a> {
             joints: self.each(&root.joints, Self::joint),
             constraints: self.each(&root.constraints, Self::constraint),
             drivers,
-            measures: self.each(&root.measures, measure),
+            measures,
             derived: Vec::new(),
             forces: self.each(&root.forces, force),
             outputs: self.outputs(&root.outputs.or_empty()),

@@ -90,7 +90,8 @@ impl<'a> Kind<'a> for PrescribedMotion {
         let course = if item.value.get_ref().is_table() {
             let fields = context.fields(item.span(), item.value, "the motion".to_owned())?;
             let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
-            context.motion_table(keys)?
+            let (points, interpolation, ends) = context.motion_table(keys)?;
+            Course::Points(points, interpolation, ends)
         } else {
             Course::Expression(
                 context
@@ -108,10 +109,10 @@ impl<'a> Kind<'a> for PrescribedMotion {
 }
 
 impl<'a> Context<'a> {
-    fn motion_table(
+    pub(super) fn motion_table(
         &mut self,
         (point_keys, keys): (PointKeys<'a>, MotionKeys<'a>),
-    ) -> Option<Course> {
+    ) -> Option<(PointTable, Interpolation, Ends)> {
         let ends_place = keys.ends.span.clone();
         let interpolation = keys.law.or(Interpolation::Spline);
         let ends = keys.ends.or(Ends::Clamped);
@@ -122,7 +123,7 @@ impl<'a> Context<'a> {
             return None;
         }
         let points = self.points(point_keys)?;
-        Some(Course::Points(points, interpolation?, ends?))
+        Some((points, interpolation?, ends?))
     }
 
     /// Refuses a motion whose value or rates at the start time are not finite, and a distance

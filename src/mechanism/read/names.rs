@@ -6,11 +6,14 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::is_taken;
 use crate::mechanism::names::is_legal;
 use crate::mechanism::wording::quoted;
-use crate::mechanism::{BodyId, Diagnostic, Dimension, ParameterId, Span, Unit};
+use crate::mechanism::{
+    BodyId, Coordinate, Diagnostic, Dimension, Driver, Measure, ParameterId, Span, Unit,
+};
 
 use super::context::Context;
 use super::kind::Entry;
 use super::root::Root;
+use super::table::Field;
 
 impl<'a> Context<'a> {
     /// Declares parameters and bodies; reports illegal, taken and repeated names.
@@ -28,6 +31,30 @@ impl<'a> Context<'a> {
         let constraints = root.constraints.items().iter().map(Entry::name);
         self.holder_counts = [joints.len(), constraints.len()];
         self.holders = joints.chain(constraints).zip(0..).collect();
+    }
+
+    /// Declares the coordinates that equations may name: those in the sections of drivers,
+    /// freedoms and measures.
+    pub(super) fn declare_coordinates(
+        &mut self,
+        sections: [&Field<Vec<Entry<'a>>>; 3],
+        drivers: &[Driver],
+        measures: &[Measure],
+    ) {
+        let drivers = drivers
+            .iter()
+            .map(|driver| (&driver.name, driver.coordinate));
+        let measures = measures
+            .iter()
+            .map(|measure| (&measure.name, measure.coordinate));
+        let known: HashMap<&String, Coordinate> = drivers.chain(measures).collect();
+        let entries = sections.into_iter().flat_map(Field::items);
+        for entry in entries {
+            match known.get(&entry.name().to_owned()) {
+                Some(coordinate) => self.coordinates.push((entry.name(), *coordinate)),
+                None => self.computed.push(entry.name()),
+            }
+        }
     }
 
     /// Checks the names that become FMI variables or their prefixes.

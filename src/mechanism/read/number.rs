@@ -3,10 +3,10 @@
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::expression::{Scope, SignalNames};
+use crate::mechanism::expression::{MovingNames, Parsed, Scope};
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::{quoted, shown};
-use crate::mechanism::{Dimension, Expression, Jet, Span, Unit, Variable};
+use crate::mechanism::{Dimension, Expression, ExpressionError, Jet, Span, Unit, Variable};
 
 use super::context::Context;
 use super::kind::{Array, Item, Kind, schema};
@@ -114,13 +114,13 @@ impl<'a> Kind<'a> for Formula {
 }
 
 impl<'a> Context<'a> {
-    /// Reads a number or an expression over the parameters, `variables` and `signals`; warns if it
-    /// adds quantities of different dimensions.
+    /// Reads a number or an expression over the parameters, `variables` and `moving` quantities; warns
+    /// if it adds quantities of different dimensions.
     pub(super) fn formula(
         &mut self,
         value: &'a Value<'a>,
         variables: &[Variable],
-        signals: Option<&SignalNames<'_>>,
+        moving: Option<&MovingNames<'_>>,
     ) -> Option<Quantity> {
         let quantity = |expression, dimension| Quantity {
             expression,
@@ -139,23 +139,52 @@ impl<'a> Context<'a> {
             self.wrong_type(value, "a number or an expression string");
             return None;
         };
+        let parsed = self.parse(
+            value,
+            text,
+            (variables, moving),
+            Expression::parse_with_dimension,
+        )?;
+        Some(quantity(parsed.expression, parsed.dimension))
+    }
+
+    /// Reads the equation of a coupling over the parameters and `moving` quantities.
+    pub(super) fn equation(
+        &mut self,
+        value: &'a Value<'a>,
+        moving: &MovingNames<'_>,
+    ) -> Option<Parsed> {
+        let text = self.text(value)?;
+        self.parse(value, text, (&[], Some(moving)), Expression::parse_equation)
+    }
+
+    /// Parses a text; reports its first fault, or warns of quantities of different dimensions that
+    /// it adds.
+    fn parse(
+        &mut self,
+        value: &'a Value<'a>,
+        text: &str,
+        (variables, moving): (&[Variable], Option<&MovingNames<'_>>),
+        parse: impl Fn(&str, Scope<'_>, &[Option<Dimension>]) -> Result<Parsed, ExpressionError>,
+    ) -> Option<Parsed> {
         let scope = Scope {
             parameters: &self.parameters,
             variables,
-            signals,
+            moving,
         };
-        match Expression::parse_with_dimension(text, scope, &self.parameter_dimensions) {
+        match parse(text, scope, &self.parameter_dimensions) {
             Ok(parsed) => {
                 for id in parsed.expression.parameters() {
                     self.parameters_used[id.index()] = true;
                 }
-                if let Some(clash) = parsed.clash {
+                if let Some(clash) = &parsed.clash {
                     let part = text.get(clash.span.clone());
                     let part = part.map_or_else(|| quoted(text), quoted);
-                    let span = syntax::part_span(self.source, value.span(), text, clash.span);
+                    let span =
+                        syntax::part_span(self.source, value.span(), text, clash.span.clone());
                     self.warn_of_clash(span, &part, clash.dimensions);
                 }
-                Some(quantity(parsed.expression, parsed.dimension))
+                Some(parsed)
             }
             Err(error) => {
                 let span = syntax::part_span(self.source, value.span(), text, error.span);

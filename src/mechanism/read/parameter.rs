@@ -12,7 +12,7 @@ use crate::mechanism::wording::{either, quoted};
 use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, ParameterId, Unit};
 
 use super::context::Context;
-use super::kind::{Described, Entry, Flag, Item, Kind, Text, Word, schema};
+use super::kind::{Described, Entry, Flag, Item, Kind, Text, Word, schema, word_here};
 #[cfg(feature = "cli")]
 use super::number::NUMBER;
 use super::number::{Formula, Limit, Quantity};
@@ -54,7 +54,7 @@ impl Described for AnyParameter {
 const UNIT: Word<Unit> = Word::new("unit", code::UNKNOWN_UNIT, || {
     Unit::ALL.map(|unit| (unit.name, unit)).to_vec()
 })
-.with_synonyms(synonym);
+.with_synonyms(|text| synonym(text).map(word_here));
 
 /// Signs that stand for a product or a power, or for nothing.
 const SIGNS: [char; 5] = ['.', '*', '·', '^', ' '];

@@ -29,12 +29,13 @@ impl<'a> Context<'a> {
             }
         };
         for joint in &mechanism.joints {
-            hold(&[joint.from, joint.to]);
+            let markers: Vec<_> = joint.markers().collect();
+            hold(&markers);
         }
         let constraints = mechanism.constraints.iter().map(|c| c.coordinate);
         let drivers = mechanism.drivers.iter().map(|d| d.coordinate);
         for coordinate in constraints.chain(drivers) {
-            hold(&[coordinate.from, coordinate.to, coordinate.axes]);
+            hold(&coordinate.markers());
         }
         for (entry, _) in bodies.iter().zip(held).filter(|(_, held)| !held) {
             let name = quoted(entry.name());

@@ -436,7 +436,7 @@ fn ratio_on_ground(kind: &JointKind, number: &impl Fn(&Expression) -> f64) -> Op
     Some(if same_sense { first } else { -first } / second)
 }
 
-/// Multiplies all lengths, masses and times; nothing for cams, whose profiles are formulas.
+/// Multiplies all lengths, masses and times; nothing for cams and couplings, which have formulas.
 fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
     let parameters = mechanism.default_parameters();
     let times = |expression: &mut Expression, factor: f64| {
@@ -461,7 +461,8 @@ fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
             | JointKind::RevoluteTranslational { offset: own }
             | JointKind::RackAndPinion { radius: own, .. }
             | JointKind::Rolling { radius: own, .. } => times(own, length),
-            JointKind::Cam { .. } => return None,
+            // Formulas.
+            JointKind::Cam { .. } | JointKind::Coupling(_) => return None,
             // A ratio.
             JointKind::Gear { .. } | JointKind::Belt { .. } => {}
             JointKind::Revolute | JointKind::Translational | JointKind::Slot | JointKind::Weld => {}

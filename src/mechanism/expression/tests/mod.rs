@@ -72,7 +72,7 @@ fn parse(text: &str) -> Result<Expression, ExpressionError> {
         Scope {
             parameters: &parameters,
             variables: &[Variable::Time],
-            signals: None,
+            moving: None,
         },
     )
 }

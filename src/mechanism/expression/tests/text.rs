@@ -83,7 +83,7 @@ fn time_is_refused_where_it_has_no_place() {
     let scope = Scope {
         parameters: &parameters,
         variables: &[],
-        signals: None,
+        moving: None,
     };
     let error = Expression::parse("2*t", scope).expect_err("no time here");
     assert_eq!(error.span, 2..3);
@@ -102,7 +102,7 @@ fn the_polar_angle_has_its_place_in_a_profile() {
         let scope = Scope {
             parameters: &parameters,
             variables,
-            signals: None,
+            moving: None,
         };
         Expression::parse(text, scope)
     };

@@ -2,6 +2,7 @@
 
 mod belt;
 mod cam;
+mod coupling;
 mod gear;
 mod link;
 mod rack_and_pinion;
@@ -17,7 +18,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::{Joint, JointKind, MarkerId};
 
 use super::context::Context;
-use super::kind::{Described, Entry, Fields, Text, Word};
+use super::kind::{Described, Entry, Fields, Text, Word, word_here};
 use super::reference::{MARKERS, MarkerPair};
 use super::table::{Keys, table};
 
@@ -27,13 +28,20 @@ table! {
         /// Type of the joint.
         #[required("\"revolute\"")]
         r#type: &'static JointType = JOINT_TYPE,
-        /// Markers i and j, on different bodies.
-        #[required(MARKERS)]
-        markers: [MarkerId; 2] = MarkerPair,
         /// Description in one line.
         description: String = Text,
     }
+
+    /// A joint between two markers.
+    struct PairKeys<'a> {
+        /// Markers i and j, on different bodies.
+        #[required(MARKERS)]
+        markers: [MarkerId; 2] = MarkerPair,
+    }
 }
+
+/// A kind of joint with its markers i and j.
+type Joined = (JointKind, [MarkerId; 2]);
 
 /// Type of joint as the file knows it.
 pub(super) struct JointType {
@@ -41,14 +49,14 @@ pub(super) struct JointType {
     name: &'static str,
     /// Other terms for it.
     synonyms: &'static [&'static str],
-    /// Reads the keys of the type.
-    read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<JointKind>,
+    /// Reads the keys of the type: its kind, and markers i and j.
+    read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<Joined>,
     #[cfg(feature = "cli")]
     schema: fn() -> serde_json::Value,
 }
 
-/// Declares a type of joint: its name and other terms for it, its keys besides those of every
-/// joint, and the joint that they make.
+/// Declares a type of joint between two markers: its name and other terms for it, its keys besides
+/// those of every such joint, and the joint that they make.
 macro_rules! joint_type {
     (
         $name:literal $(or $synonym:literal)* => $kind:expr;
@@ -65,15 +73,20 @@ macro_rules! joint_type {
             synonyms: &[$($synonym),*],
             read: |context, fields| {
                 let kind: for<$life> fn($keys<$life>, &mut $crate::mechanism::read::context::Context<$life>) -> _ = $kind;
-                kind(context.further::<$crate::mechanism::read::joint::JointKeys<'_>, $keys<'_>>(fields), context)
+                let kind = kind(context.further::<$crate::mechanism::read::joint::CommonKeys<'_>, $keys<'_>>(fields), context);
+                let pair = <$crate::mechanism::read::joint::PairKeys<'_> as $crate::mechanism::read::table::Keys<'_>>::read(context, fields);
+                Some((kind?, pair.markers.value?))
             },
             #[cfg(feature = "cli")]
-            schema: <($crate::mechanism::read::joint::JointKeys<'_>, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema,
+            schema: <($crate::mechanism::read::joint::CommonKeys<'_>, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema,
         };
     };
 }
 
 use joint_type;
+
+/// The keys of every joint between two markers.
+type CommonKeys<'a> = (JointKeys<'a>, PairKeys<'a>);
 
 /// Every type of joint; a new one is a file and a line here.
 static JOINT_TYPES: &[&JointType] = &[
@@ -88,6 +101,7 @@ static JOINT_TYPES: &[&JointType] = &[
     &rack_and_pinion::TYPE,
     &rolling::TYPE,
     &cam::TYPE,
+    &coupling::TYPE,
 ];
 
 const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT_TYPE, || {
@@ -100,7 +114,10 @@ const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT
     let is_meant = |term: &&str| term.eq_ignore_ascii_case(text);
     let mut joint_types = JOINT_TYPES.iter();
     let meant = joint_types.find(|joint_type| joint_type.synonyms.iter().any(is_meant));
-    meant.map(|joint_type| joint_type.name)
+    meant.map(|joint_type| match coupling::written(text) {
+        Some(written) => format!("write `{written}`"),
+        None => word_here(joint_type.name),
+    })
 });
 
 impl<'a> Context<'a> {
@@ -108,12 +125,11 @@ impl<'a> Context<'a> {
         let fields = self.entry_fields(entry, "joint")?;
         // The keys of an unknown type are unknown too.
         let common = JointKeys::read(self, &fields);
-        let kind = (common.r#type.value?.read)(self, &fields);
-        let [from, to] = common.markers.value?;
+        let (kind, [from, to]) = (common.r#type.value?.read)(self, &fields)?;
         Some(Joint {
             name: entry.name().to_owned(),
             description: common.description.value.unwrap_or_default(),
-            kind: kind?,
+            kind,
             from,
             to,
         })

@@ -1,0 +1,43 @@
+//! Equations between coordinates.
+
+use super::{Coordinate, Expression, Motion, ParameterId, Variable};
+
+/// Most coordinates in one equation.
+pub const MOST_COUPLED: usize = 8;
+
+/// An equation between coordinates, left − right = 0: that of a coupling.
+#[derive(Clone, Debug)]
+pub struct CoordinateEquation {
+    /// As the file writes it.
+    pub text: String,
+    /// Its coordinates, each with the name of the driver or measure by which the equation calls
+    /// it; one at least, [`MOST_COUPLED`] at most.
+    pub coordinates: Vec<(String, Coordinate)>,
+    /// left − right, over [`Variable::Coordinate`]s by their places in the list.
+    pub difference: Expression,
+    /// The table that it calls as the function `law`.
+    pub law: Option<Motion>,
+    /// Whether both sides are angles; lengths otherwise.
+    pub is_angle: bool,
+}
+
+impl CoordinateEquation {
+    /// Returns the parameters that it uses; one may come twice.
+    pub fn parameters(&self) -> impl Iterator<Item = ParameterId> {
+        let of_law = self.law.iter().flat_map(Motion::parameters);
+        self.difference.parameters().chain(of_law)
+    }
+
+    /// Returns the places of the coordinates in the equation, in the order in which they occur.
+    pub(super) fn places(difference: &Expression) -> Vec<usize> {
+        let mut places = Vec::new();
+        for variable in difference.variables() {
+            if let Variable::Coordinate(place) = variable
+                && !places.contains(&place)
+            {
+                places.push(place);
+            }
+        }
+        places
+    }
+}

@@ -1,0 +1,187 @@
+//! `coupling`: an equation between coordinates.
+
+use std::collections::HashSet;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::expression::{LawOfCoupling, MovingNames};
+use crate::mechanism::read::context::Context;
+use crate::mechanism::read::kind::{Item, Kind, schema};
+use crate::mechanism::read::motion::MotionKeys;
+#[cfg(feature = "cli")]
+use crate::mechanism::read::number::NUMBER;
+use crate::mechanism::read::points::PointKeys;
+use crate::mechanism::read::table::table;
+use crate::mechanism::syntax::Value;
+use crate::mechanism::{
+    Coordinate, CoordinateEquation, CoordinateKind, Dimension, Expression, JointKind, MOST_COUPLED,
+    Motion, MotionTable, Variable,
+};
+
+#[cfg(feature = "cli")]
+use super::super::kind::Described;
+use super::{Joined, JointKeys, JointType};
+
+table! {
+    /// An equation between coordinates: of drivers, and of measures that are no formulas.
+    struct Coupling<'a> {
+        /// Equation, such as "travel = pitch*turn/(2*pi)", over names of drivers and measures,
+        /// parameters, functions and `law`.
+        #[required("\"travel = pitch*turn/(2*pi)\"")]
+        equation: &'a Value<'a> = Equation,
+        /// Function `law` of one argument in the equation: an expression in x, or points with the
+        /// way between them.
+        law: Law = LawOfOneArgument,
+    }
+}
+
+pub(super) static TYPE: JointType = JointType {
+    name: "coupling",
+    synonyms: &["screw", "mimic", "equation", "differential", "geneva"],
+    read: |context, fields| {
+        let keys = context.further::<JointKeys<'_>, Coupling<'_>>(fields);
+        context.coupling(keys)
+    },
+    #[cfg(feature = "cli")]
+    schema: <(JointKeys<'_>, Coupling<'_>) as Described>::schema,
+};
+
+/// Returns the keys of a coupling that another term stands for.
+pub(super) fn written(term: &str) -> Option<&'static str> {
+    match term.to_ascii_lowercase().as_str() {
+        "screw" => Some("type = \"coupling\", equation = \"travel = pitch*turn/(2*pi)\""),
+        "mimic" => Some("type = \"coupling\", equation = \"right = -left\""),
+        "differential" => Some("type = \"coupling\", equation = \"cage = (left + right)/2\""),
+        "geneva" => Some("type = \"coupling\", equation = \"wheel = law(crank)\", law = …"),
+        _ => None,
+    }
+}
+
+/// Equation, not read yet.
+struct Equation;
+
+impl<'a> Kind<'a> for Equation {
+    type Value = &'a Value<'a>;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<&'a Value<'a>> {
+        context.text(item.value)?;
+        Some(item.value)
+    }
+
+    schema! {{ "type": "string" }}
+}
+
+/// Function of one argument.
+struct LawOfOneArgument;
+
+/// Law as it is read.
+pub(super) enum Law {
+    Expression(Expression, Option<Dimension>),
+    Table(Motion),
+}
+
+impl<'a> Kind<'a> for LawOfOneArgument {
+    type Value = Law;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Law> {
+        if !item.value.get_ref().is_table() {
+            let formula = context.formula(item.value, &[Variable::Argument], None)?;
+            return Some(Law::Expression(formula.expression, formula.dimension));
+        }
+        let fields = context.fields(item.span(), item.value, "the law".to_owned())?;
+        let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
+        let (points, interpolation, ends) = context.motion_table(keys)?;
+        Some(Law::Table(Motion::Table(MotionTable {
+            table: points.table,
+            interpolation,
+            ends,
+        })))
+    }
+
+    schema! {{ "anyOf": [NUMBER.schema(), <(PointKeys<'_>, MotionKeys<'_>)>::schema()] }}
+}
+
+impl<'a> Context<'a> {
+    fn coupling(&mut self, keys: Coupling<'a>) -> Option<Joined> {
+        let law = keys.law.optional()?;
+        let value = keys.equation.value?;
+        // After an error elsewhere the coordinates may be incomplete.
+        if self.failed {
+            return None;
+        }
+        let names = self.coordinates.iter().map(|(name, _)| *name);
+        let kinds = self
+            .coordinates
+            .iter()
+            .map(|(_, coordinate)| coordinate.kind);
+        let dimension = |kind: CoordinateKind| kind.unit().dimension;
+        let moving = MovingNames {
+            known: names.zip((0..).map(Variable::Coordinate)).collect(),
+            dimensions: kinds.map(dimension).collect(),
+            computed: self.computed.clone(),
+            usable: "an equation may use parameters, drivers and measures with a coordinate",
+            law: law.as_ref().map(|law| match law {
+                Law::Expression(expression, dimension) => {
+                    LawOfCoupling::Expression(expression, *dimension)
+                }
+                Law::Table(_) => LawOfCoupling::Table,
+            }),
+        };
+        let parsed = self.equation(value, &moving)?;
+        let places = CoordinateEquation::places(&parsed.expression);
+        self.check_coupled(&places, value)?;
+        let coordinates: Vec<(String, Coordinate)> = places
+            .iter()
+            .map(|&place| {
+                let (name, coordinate) = self.coordinates[place];
+                (name.to_owned(), coordinate)
+            })
+            .collect();
+        let difference = parsed.expression.with_coordinates(&places);
+        let (_, first) = coordinates.first()?;
+        let (_, last) = coordinates.last()?;
+        let ends = [first.from, last.to];
+        let is_angle = match parsed.dimension {
+            Some(dimension) => dimension.m == 0,
+            None => coordinates
+                .iter()
+                .all(|(_, coordinate)| coordinate.kind.is_angle()),
+        };
+        let law = law.and_then(|law| match law {
+            Law::Table(motion) => Some(motion),
+            Law::Expression(..) => None,
+        });
+        let equation = CoordinateEquation {
+            text: value.get_ref().as_str().unwrap_or_default().to_owned(),
+            coordinates,
+            difference,
+            law,
+            is_angle,
+        };
+        Some((JointKind::Coupling(Box::new(equation)), ends))
+    }
+
+    /// Refuses an equation of no coordinates or of too many, or of coordinates of too many bodies.
+    fn check_coupled(&mut self, places: &[usize], value: &'a Value<'a>) -> Option<()> {
+        let coordinates = places.iter().map(|&place| self.coordinates[place].1);
+        let markers = coordinates.flat_map(|coordinate| coordinate.markers());
+        let bodies: HashSet<_> = markers.filter_map(|m| self.carriers[m.index()]).collect();
+        let most = |count, things| {
+            format!("the equation has {count} {things}, {MOST_COUPLED} at most are possible")
+        };
+        let (message, help) = if places.is_empty() {
+            (
+                "the equation has no coordinate".to_owned(),
+                "name drivers and measures: `travel = pitch*turn/(2*pi)`",
+            )
+        } else if places.len() > MOST_COUPLED {
+            (most(places.len(), "coordinates"), "use several couplings")
+        } else if bodies.len() > MOST_COUPLED {
+            (most(bodies.len(), "bodies"), "use several couplings")
+        } else {
+            return Some(());
+        };
+        self.error(code::BAD_EXPRESSION, value.span(), message)
+            .suggest(help);
+        None
+    }
+}
