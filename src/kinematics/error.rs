@@ -341,27 +341,40 @@ pub struct OpenPose {
     pub q: Vec<f64>,
 }
 
-/// A length that would let a mechanism close.
+/// A number that would let a mechanism close.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fit {
-    /// The link or the body that has the length: kind and name.
-    pub origin: String,
-    /// The markers of the body between which it is measured; `None` for a link.
-    pub between: Option<[String; 2]>,
-    /// The length that closes \[m\].
-    pub length: f64,
-    /// The present length \[m\].
-    pub present: f64,
+pub enum Fit {
+    /// A length.
+    Length {
+        /// The link or the body that has the length: kind and name.
+        origin: String,
+        /// The markers of the body between which it is measured; `None` for a link.
+        between: Option<[String; 2]>,
+        /// The length that closes \[m\].
+        length: f64,
+        /// The present length \[m\].
+        present: f64,
+    },
+    /// The phase of wheels as they are drawn.
+    Phase {
+        /// The joint: kind and name.
+        origin: String,
+    },
 }
 
 impl fmt::Display for Fit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            origin,
-            between,
-            length,
-            present,
-        } = self;
+        let (origin, between, length, present) = match self {
+            Self::Phase { origin } => {
+                return write!(f, "{origin} would close with `phase = \"drawn\"`");
+            }
+            Self::Length {
+                origin,
+                between,
+                length,
+                present,
+            } => (origin, between, length, present),
+        };
         // As many digits as tell the two apart; rounding decides about none.
         let apart = (1e3 * (length - present)).abs().log10() + 1e-3;
         let apart = apart.floor();

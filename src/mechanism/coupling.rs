@@ -1,6 +1,6 @@
 //! Equations between coordinates.
 
-use super::{Coordinate, Expression, Motion, ParameterId, Variable};
+use super::{Coordinate, Expression, Motion, ParameterId, Phase, Variable};
 
 /// Most coordinates in one equation.
 pub const MOST_COUPLED: usize = 8;
@@ -17,6 +17,8 @@ pub struct CoordinateEquation {
     pub difference: Expression,
     /// The table that it calls as the function `law`.
     pub law: Option<Motion>,
+    /// Value at which left − right is held.
+    pub phase: Phase,
     /// Whether both sides are angles; lengths otherwise.
     pub is_angle: bool,
 }

@@ -214,6 +214,8 @@ pub enum JointKind {
         internal: bool,
         /// Body that carries both centres, `None` for ground.
         carrier: Option<BodyId>,
+        /// Value at which the relation of their angles is held.
+        phase: Phase,
     },
     /// Two wheels joined by a belt or chain. Marker angles set the phase.
     Belt {
@@ -223,6 +225,8 @@ pub enum JointKind {
         crossed: bool,
         /// Body that carries both centres, `None` for ground.
         carrier: Option<BodyId>,
+        /// Value at which the relation of their angles is held.
+        phase: Phase,
     },
     /// A pinion, which has marker i, that rolls along the x-axis of marker j, the rack.
     RackAndPinion {
@@ -230,6 +234,8 @@ pub enum JointKind {
         radius: Expression,
         /// Side of the rack on which the pinion is.
         side: RackSide,
+        /// Value at which the relation of way and angle is held.
+        phase: Phase,
     },
     /// A wheel, which has marker i, that rolls on the x-axis of marker j, the track, and stays on it.
     Rolling {
@@ -237,6 +243,8 @@ pub enum JointKind {
         radius: Expression,
         /// Side of the track on which the wheel is.
         side: RackSide,
+        /// Value at which the relation of way and angle is held.
+        phase: Phase,
     },
     /// An equation between coordinates. Marker i is the first one of its first coordinate, marker j
     /// the second one of its last.
@@ -248,6 +256,31 @@ pub enum JointKind {
         /// Contour of the cam.
         profile: Profile,
     },
+}
+
+/// Constant of a relation between wheels, or of an equation between coordinates.
+#[derive(Clone, Debug)]
+pub enum Phase {
+    /// A value \[m or rad\]; zero if the file gives none.
+    At(Expression),
+    /// The value that the bodies' estimates give with the file's parameters: wheels mesh as they are
+    /// drawn.
+    Drawn,
+}
+
+impl JointKind {
+    /// Returns the constant of its first relation, if the file may set it.
+    #[must_use]
+    pub fn phase(&self) -> Option<&Phase> {
+        match self {
+            Self::Gear { phase, .. }
+            | Self::Belt { phase, .. }
+            | Self::RackAndPinion { phase, .. }
+            | Self::Rolling { phase, .. } => Some(phase),
+            Self::Coupling(equation) => Some(&equation.phase),
+            _ => None,
+        }
+    }
 }
 
 /// Part of a follower that touches the cam, on the outer side of its contour.

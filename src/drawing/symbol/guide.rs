@@ -19,7 +19,7 @@ pub(super) fn compose(composer: &mut Composer, along: Anchor, to: Anchor) -> boo
     let guides: Vec<(SlideWay, Option<Point>)> = own
         .filter_map(|joint| match &joint.kind {
             JointKind::Cam { follower, .. } => stem(composer, along, to, joint, follower),
-            JointKind::RackAndPinion { radius, side } => {
+            JointKind::RackAndPinion { radius, side, .. } => {
                 let pair = [joint.from, joint.to].map(|marker| composer.anchor(marker));
                 let radius = composer.value(radius);
                 Some((back(composer, along, to, pair, radius, *side)?, None))

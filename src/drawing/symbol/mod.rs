@@ -134,7 +134,7 @@ symbols! { composer, ends:
         wheel::compose(composer, ends, sizes, *internal);
     belt: Belt, JointKind::Belt { sizes, crossed, .. } =>
         belt::compose(composer, ends, sizes, *crossed);
-    rack: Rack, JointKind::RackAndPinion { radius, side } =>
+    rack: Rack, JointKind::RackAndPinion { radius, side, .. } =>
         rack::compose(composer, ends, radius, *side);
     track: Track, JointKind::Rolling { radius, .. } => track::compose(composer, ends, radius);
     cam: Cam, JointKind::Cam { follower, profile } =>

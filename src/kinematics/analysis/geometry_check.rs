@@ -167,7 +167,7 @@ pub(in crate::kinematics) fn geometry_warnings(
                 crossed,
                 ..
             } => check.belt(centres, check.numbers(radii), *crossed),
-            JointKind::RackAndPinion { radius, side } => {
+            JointKind::RackAndPinion { radius, side, .. } => {
                 check.rack(centres, radius.value(check.parameters), *side)
             }
             JointKind::Cam { follower, .. } => {

@@ -7,6 +7,7 @@
 
 use super::rank::{constraint_rows, jacobian_rows};
 use crate::kinematics::Origin;
+use crate::kinematics::assembly::estimate::estimate;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::{Error, Fit, OpenJoint, OpenPose};
@@ -32,6 +33,9 @@ const LARGEST: f64 = 0.03;
 const LEFT: f64 = 4.0;
 /// Largest remainder of such a row, whatever the gap.
 const MOST_LEFT: f64 = 0.2;
+/// Largest scaled difference between wheels as they are drawn and as all else holds them: rounding of
+/// turns.
+const AS_DRAWN: f64 = 1e-9;
 /// Ratio of a coefficient in a combination of rows to the remainder of the combination. Smaller
 /// coefficients are attributed to the gap.
 const ABOVE_REMAINDER: f64 = 3.0;
@@ -145,7 +149,8 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
     (echelon.kept().len() == system.unknowns()).then_some(origins)
 }
 
-/// Returns the length of a link, or between the two pins of a body, that would close an origin.
+/// Returns the length of a link, or between the two pins of a body, that would close an origin, or
+/// whether the phase of its wheels as drawn would.
 ///
 /// Before: all other origins are closed at the present pose.
 fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
@@ -159,7 +164,7 @@ fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
     match joint.kind {
         JointKind::Link { .. } => {
             let row = system.rows_of(&[origin])[0];
-            Some(Fit {
+            Some(Fit::Length {
                 origin: origin.describe(mechanism),
                 between: None,
                 length: length(joint.from, joint.to),
@@ -181,14 +186,26 @@ fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
             found.sort_by_key(|(body, ..)| body.index());
             let (body, own, partner, other) = found.pop()?;
             let name = |marker: MarkerId| mechanism.markers[marker.index()].name.clone();
-            Some(Fit {
+            Some(Fit::Length {
                 origin: format!("body `{}`", mechanism.bodies[body.index()].name),
                 between: Some([name(other), name(own)]),
                 length: length(other, partner),
                 present: length(other, own),
             })
         }
-        _ => None,
+        _ => {
+            joint.kind.phase()?;
+            let row = *system.rows_of(&[origin]).first()?;
+            let equation = &system.equations()[row];
+            let drawn = estimate(system, &state.pose.parameters).ok()?;
+            let mut at = state.at.clone();
+            let here = equation.constraint.value(&at);
+            at.set_pose(mechanism, &drawn);
+            let missing = (equation.constraint.value(&at) - here) * equation.row_scale(&at);
+            (missing.abs() <= AS_DRAWN).then(|| Fit::Phase {
+                origin: origin.describe(mechanism),
+            })
+        }
     }
 }
 

@@ -11,8 +11,8 @@ use crate::kinematics::constraint::{
 };
 use crate::mechanism::{
     BodyId, CamFollower, Coordinate, CoordinateEquation, CoordinateKind, Expression, Joint,
-    JointKind, LinearForm, Mechanism, Motion, MotionInForce, ParameterId, Profile, ProfileInForce,
-    RackSide, WheelSizes,
+    JointKind, LinearForm, Mechanism, Motion, MotionInForce, ParameterId, Phase, Profile,
+    ProfileInForce, RackSide, WheelSizes,
 };
 
 /// Coefficients, profiles, laws and unknowns of joints.
@@ -115,16 +115,32 @@ pub(super) fn relations(
             sizes,
             internal,
             carrier,
-        } => vec![couple(joint, sizes, !internal, *carrier, parts)],
+            phase,
+        } => vec![(
+            couple(joint, sizes, !internal, *carrier, parts),
+            held_at(phase),
+        )],
         JointKind::Belt {
             sizes,
             crossed,
             carrier,
-        } => vec![couple(joint, sizes, *crossed, *carrier, parts)],
-        JointKind::RackAndPinion { radius, side } => {
-            vec![(roll(joint, radius, *side, parts), zero())]
+            phase,
+        } => vec![(
+            couple(joint, sizes, *crossed, *carrier, parts),
+            held_at(phase),
+        )],
+        JointKind::RackAndPinion {
+            radius,
+            side,
+            phase,
+        } => {
+            vec![(roll(joint, radius, *side, parts), held_at(phase))]
         }
-        JointKind::Rolling { radius, side } => {
+        JointKind::Rolling {
+            radius,
+            side,
+            phase,
+        } => {
             let (track, wheel) = (to, from);
             // The distance from the track to the centre is positive on the side of the wheel.
             let (from, to) = match side {
@@ -138,14 +154,14 @@ pub(super) fn relations(
                 axes: track,
             });
             vec![
-                (roll(joint, radius, *side, parts), zero()),
+                (roll(joint, radius, *side, parts), held_at(phase)),
                 (height, radius.clone()),
             ]
         }
         JointKind::Coupling(equation) => {
             let what = origin.describe(mechanism);
             let coupling = coupling(mechanism, equation, &what, parts);
-            vec![(Box::new(coupling), zero())]
+            vec![(Box::new(coupling), held_at(&equation.phase))]
         }
         JointKind::Cam { follower, profile } => {
             let profile = parts.profile(profile, mechanism, origin.describe(mechanism));
@@ -193,6 +209,15 @@ pub(super) fn relations(
                 }
             }
         }
+    }
+}
+
+/// Returns the constant of a relation; zero until the [system](super::System) sets one that the
+/// estimates give.
+fn held_at(phase: &Phase) -> Expression {
+    match phase {
+        Phase::At(value) => value.clone(),
+        Phase::Drawn => Expression::constant(0.0),
     }
 }
 
@@ -258,10 +283,10 @@ fn couple(
     opposite: bool,
     carrier: Option<BodyId>,
     parts: &mut JointParts,
-) -> (Box<dyn Constraint>, Expression) {
+) -> Box<dyn Constraint> {
     let what = format!("a wheel's size in joint `{}`", joint.name);
     let [first, second] = sizes.expressions();
-    let pair = WheelPair {
+    Box::new(WheelPair {
         from: joint.from,
         to: joint.to,
         carrier,
@@ -270,6 +295,5 @@ fn couple(
             parts.coefficient(second, what),
         ],
         opposite,
-    };
-    (Box::new(pair), Expression::constant(0.0))
+    })
 }

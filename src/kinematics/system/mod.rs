@@ -20,7 +20,8 @@ use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, Turn
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    DriverId, Expression, Jet, Mechanism, Motion, MotionInForce, MovingProfile, Number, ParameterId,
+    DriverId, Expression, Jet, Mechanism, Motion, MotionInForce, MovingProfile, Number,
+    ParameterId, Phase,
 };
 
 /// The target of c(q).
@@ -124,12 +125,43 @@ impl System {
             let part = unknowns.find_map(|column| part_sizes.get(column / 3));
             equation.part = part.copied().unwrap_or(1.0);
         }
-        Self {
+        let mut system = Self {
             mechanism,
             equations,
             driver_rows,
             joint_parts,
             part_sizes,
+        };
+        system.take_drawn_phases();
+        system
+    }
+
+    /// Holds the relations whose phase is as drawn at the values that the estimates give with the
+    /// file's parameters. Values that are not finite are told when these parameters are set.
+    fn take_drawn_phases(&mut self) {
+        let joints = self.mechanism.joints.iter().enumerate();
+        let drawn = joints.filter(|(_, joint)| matches!(joint.kind.phase(), Some(Phase::Drawn)));
+        let rows =
+            drawn.flat_map(|(joint, _)| self.rows_of(&[Origin::Joint(joint)]).first().copied());
+        let rows: Vec<usize> = rows.collect();
+        if rows.is_empty() {
+            return;
+        }
+        let parameters = self.mechanism.default_parameters();
+        let (mut at, mut targets) = (self.configuration(), self.targets());
+        if self
+            .set_parameters(&parameters, &mut at, &mut targets)
+            .is_err()
+        {
+            return;
+        }
+        let estimates = self.mechanism.bodies.iter().flat_map(|body| &body.estimate);
+        let mut q: Vec<f64> = estimates.map(|e| e.value(&parameters)).collect();
+        q.resize(self.unknowns(), 0.0);
+        at.set_pose(&self.mechanism, &q);
+        for row in rows {
+            let value = self.equations[row].constraint.value(&at);
+            self.equations[row].target = Target::Constant(Expression::constant(value));
         }
     }
 

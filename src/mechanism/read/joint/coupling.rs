@@ -7,18 +7,18 @@ use crate::mechanism::expression::{LawOfCoupling, MovingNames};
 use crate::mechanism::read::context::Context;
 use crate::mechanism::read::kind::{Item, Kind, schema};
 use crate::mechanism::read::motion::MotionKeys;
-#[cfg(feature = "cli")]
 use crate::mechanism::read::number::NUMBER;
 use crate::mechanism::read::points::PointKeys;
 use crate::mechanism::read::table::table;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
     Coordinate, CoordinateEquation, CoordinateKind, Dimension, Expression, JointKind, MOST_COUPLED,
-    Motion, MotionTable, Variable,
+    Motion, MotionTable, Phase, Variable,
 };
 
 #[cfg(feature = "cli")]
 use super::super::kind::Described;
+use super::phase::{PhaseOf, phase};
 use super::{Joined, JointKeys, JointType};
 
 table! {
@@ -31,6 +31,8 @@ table! {
         /// Function `law` of one argument in the equation: an expression in x, or points with the
         /// way between them.
         law: Law = LawOfOneArgument,
+        /// Constant of left - right; zero if left out, "drawn" for what the estimates give.
+        phase: Phase = PhaseOf(NUMBER),
     }
 }
 
@@ -103,6 +105,7 @@ impl<'a> Kind<'a> for LawOfOneArgument {
 impl<'a> Context<'a> {
     fn coupling(&mut self, keys: Coupling<'a>) -> Option<Joined> {
         let law = keys.law.optional()?;
+        let phase = phase(keys.phase)?;
         let value = keys.equation.value?;
         // After an error elsewhere the coordinates may be incomplete.
         if self.failed {
@@ -156,6 +159,7 @@ impl<'a> Context<'a> {
             difference,
             law,
             is_angle,
+            phase,
         };
         Some((JointKind::Coupling(Box::new(equation)), ends))
     }

@@ -2,10 +2,11 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::kind::Flag;
-use crate::mechanism::read::number::Quantity;
+use crate::mechanism::read::number::{ANGLE, Quantity};
 use crate::mechanism::read::reference::CarrierName;
-use crate::mechanism::{BodyId, JointKind};
+use crate::mechanism::{BodyId, JointKind, Phase};
 
+use super::phase::{PhaseOf, phase};
 use super::{joint_type, wheels};
 
 joint_type! {
@@ -13,6 +14,7 @@ joint_type! {
         sizes: wheels::sizes(keys.radii, keys.teeth)?,
         internal: keys.internal.or(false)?,
         carrier: keys.carrier.or(None)?,
+        phase: phase(keys.phase)?,
     });
 
     /// Two toothed wheels in mesh; the directions of the two markers are the wheels' phase.
@@ -26,5 +28,8 @@ joint_type! {
         internal: bool = Flag,
         /// Body that carries both pivots; ground if left out.
         carrier: Option<BodyId> = CarrierName,
+        /// Constant of the relation; zero if left out, which leaves the phase to the markers. "drawn"
+        /// for what the estimates give.
+        phase: Phase = PhaseOf(ANGLE),
     }
 }

@@ -5,6 +5,7 @@ mod cam;
 mod coupling;
 mod gear;
 mod link;
+mod phase;
 mod rack_and_pinion;
 mod revolute;
 mod revolute_translational;

@@ -3,14 +3,16 @@
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::kind::Word;
 use crate::mechanism::read::number::{LENGTH, Quantity};
-use crate::mechanism::{JointKind, RackSide};
+use crate::mechanism::{JointKind, Phase, RackSide};
 
 use super::joint_type;
+use super::phase::{PhaseOf, phase};
 
 joint_type! {
     "rack_and_pinion" or "rack" or "pinion" => |keys, _| Some(JointKind::RackAndPinion {
         radius: keys.radius.expression()?,
         side: keys.side.or(RackSide::Above)?,
+        phase: phase(keys.phase)?,
     });
 
     /// A pinion, which has marker i, rolls along the x-axis of marker j, the rack.
@@ -20,6 +22,9 @@ joint_type! {
         radius: Quantity = LENGTH.positive(),
         /// Side of the rack on which the pinion is, the rack's y-axis pointing up.
         side: RackSide = SIDE,
+        /// Constant of the relation; zero if left out, which leaves the phase to the markers. "drawn"
+        /// for what the estimates give.
+        phase: Phase = PhaseOf(LENGTH),
     }
 }
 
