@@ -49,7 +49,7 @@ impl Runner {
         let home = Solver::new(scenario.own.clone())?;
         let solver = Solver::new(scenario.driven.clone())?;
         let mut solution = Solution::new(&solver);
-        if columns.iter().any(Output::is_force) {
+        if columns.iter().any(Output::uses_forces) {
             solution.seek_forces(&solver);
         }
         let tolerance = solver.mechanism().simulation.tolerance;
@@ -344,7 +344,7 @@ impl Runner {
         let Self {
             solver, solution, ..
         } = self;
-        if columns.iter().any(Output::is_force) {
+        if columns.iter().any(Output::uses_forces) {
             for direction in directions {
                 derivatives.extend(solution.changes(solver, columns, direction)?);
             }
@@ -363,7 +363,7 @@ impl Runner {
             highest.unwrap_or(Order::Position),
             |change| {
                 for column in columns {
-                    derivatives.push(column.source.change(own, change)?);
+                    derivatives.push(column.source.change(own, change, None)?);
                 }
                 Ok(())
             },

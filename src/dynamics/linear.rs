@@ -7,7 +7,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use super::error::Error;
 use super::given::Given;
 use super::motion::FreeMotion;
-use crate::kinematics::{Curve, Direction, Output, OutputSource, Path, Pose, Solution, Solver};
+use crate::kinematics::{Curve, Direction, Output, Path, Pose, Solution, Solver};
 use crate::mechanism::{DriverId, Mechanism, Order};
 
 /// The linear equations of small motions about a pose: δẋ = A δx + B δu, δy = C δx + D δu.
@@ -123,12 +123,9 @@ impl FreeMotion {
         let of_forces = solution.force_changes(solver, &direction, &loads)?;
         let sensitivity =
             solver.sensitivity(&solution.rates, &solution.driver_rates, &direction)?;
-        let seen = outputs
-            .iter()
-            .map(|output| match (output.source, &of_forces) {
-                (OutputSource::Force(quantity), Some(forces)) => forces.change(quantity),
-                (source, _) => source.change(&mechanism, &sensitivity),
-            });
+        let forces = solution.forces().zip(of_forces.as_ref());
+        let outputs = outputs.iter();
+        let seen = outputs.map(|output| output.source.change(&mechanism, &sensitivity, forces));
         let seen: Result<Vec<f64>, _> = seen.collect();
         Ok((rates, DVector::from_vec(seen?)))
     }

@@ -92,7 +92,7 @@ pub use origin::Origin;
 pub use path::{Curve, Path, Rates};
 pub use plan::{BlockChoices, Crossing, Polynomial};
 pub use redundancy::Redundancy;
-pub use results::{Output, OutputSource, Solution, omitted_reactions};
+pub use results::{ForceNeed, Output, OutputSource, Solution, omitted_reactions};
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::Solver;
 pub use start::Assembly;

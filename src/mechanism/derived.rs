@@ -2,11 +2,11 @@
 
 use super::signal::{COMPONENTS, SUFFIXES};
 use super::{
-    BodyId, DriverId, Expression, MarkerId, Mechanism, Number, Order, ParameterId, Signal, Unit,
-    Variable,
+    BodyId, DriverId, Expression, ForceQuantity, MarkerId, Mechanism, Number, Order, ParameterId,
+    Signal, Unit, Variable,
 };
 
-/// Output that is a function of signals and parameters, such as a ratio of velocities.
+/// Output that is a function of signals, forces and parameters, such as a ratio of velocities.
 #[derive(Clone, Debug)]
 pub struct DerivedMeasure {
     /// Name, unique among all named things of the mechanism.
@@ -20,25 +20,46 @@ pub struct DerivedMeasure {
 }
 
 impl DerivedMeasure {
-    /// Evaluates it for the given parameters and signals. Not finite where the function has no
+    /// Evaluates it for the given parameters, signals and forces. Not finite where the function has no
     /// value, such as a ratio of velocities at rest. Allocates nothing.
     pub fn evaluate<N: Number>(
         &self,
         parameter: &impl Fn(ParameterId) -> N,
         signal: &impl Fn(Signal, Order) -> N,
+        force: &impl Fn(ForceQuantity) -> N,
     ) -> N {
         self.value
             .evaluate_at(parameter, &|variable| match variable {
                 Variable::Signal(of, order) => signal(of, order),
-                _ => unreachable!("the reader admits signals alone"),
+                Variable::Force(quantity) => force(quantity),
+                _ => unreachable!("the reader admits signals and forces alone"),
             })
     }
 
-    /// Returns the highest order of the signals that it uses.
+    /// Returns the highest order of the signals that it uses; forces depend on accelerations.
     #[must_use]
     pub fn order(&self) -> Order {
+        if self.forces().next().is_some() {
+            return Order::Acceleration;
+        }
         let orders = self.signals().map(|(_, order)| order);
         orders.max().unwrap_or(Order::Position)
+    }
+
+    /// Returns the forces that it uses.
+    pub fn forces(&self) -> impl Iterator<Item = ForceQuantity> {
+        self.value
+            .variables()
+            .filter_map(|variable| match variable {
+                Variable::Force(quantity) => Some(quantity),
+                _ => None,
+            })
+    }
+
+    /// Returns whether it uses reactions of joints or constraints.
+    #[must_use]
+    pub fn needs_reactions(&self) -> bool {
+        self.forces().any(ForceQuantity::needs_reactions)
     }
 
     /// Returns the signals that it uses.

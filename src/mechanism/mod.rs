@@ -11,6 +11,7 @@
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
 //! | `coupling` | [`CoordinateEquation`]: an equation between coordinates |
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
+//! | `reaction` | [`ForceQuantity`]: forces, energies and inertias by name |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
 //! | `setting` | start values of the FMU's settings |
@@ -33,6 +34,7 @@ mod names;
 mod number;
 mod parameter;
 mod profile;
+mod reaction;
 mod read;
 mod setting;
 mod signal;
@@ -65,6 +67,7 @@ pub use parameter::{DerivedParameter, Parameter};
 pub use profile::{
     ContourPoint, MovingProfile, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
 };
+pub use reaction::{ForceQuantity, NamedForce, Reported};
 pub use setting::{Extrapolation, RateSource};
 pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};

@@ -321,7 +321,7 @@ fn derived_at_rest(solver: &Solver) -> Vec<(&DerivedMeasure, f64)> {
     let derived = solver.mechanism().derived.iter().enumerate();
     let positions = derived.filter(|(_, measure)| measure.order() == Order::Position);
     positions
-        .map(|(index, measure)| (measure, solver.derived(index, &still, &drivers)))
+        .map(|(index, measure)| (measure, solver.derived(index, &still, &drivers, None)))
         .collect()
 }
 

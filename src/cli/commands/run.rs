@@ -133,7 +133,7 @@ impl Run {
                     .any(|(_, columns)| columns.iter().any(is_asked))
                 || over.as_ref().is_some_and(is_asked)
         };
-        let [asks_forces, asks_reactions] = [Output::is_force, Output::is_reaction].map(asks);
+        let [asks_forces, asks_reactions] = [Output::uses_forces, Output::uses_reactions].map(asks);
         let home_solver = input.assemble()?;
         let notes = [
             note_of_rest(&input.mechanism, &scenario),

@@ -69,8 +69,8 @@ impl Tolerance {
         }
         let columns = self.columns(&mechanism)?;
         let mut motion = Motion::start(input.assemble()?, scenario);
-        if columns.iter().any(Output::is_force) {
-            let reactions = columns.iter().any(Output::is_reaction);
+        if columns.iter().any(Output::uses_forces) {
+            let reactions = columns.iter().any(Output::uses_reactions);
             motion = motion.and_then(|motion| motion.with_forces(reactions));
         }
         let mut motion = motion.map_err(|error| input.error_at(times.start, &error))?;

@@ -206,15 +206,28 @@ impl<'a> DependencyTable<'a> {
         self.mechanism.drivers[driver.index()].is_given()
     }
 
-    /// Returns the inputs of forces, and the time if forces depend on it, for a force.
+    /// Returns the inputs of forces, and the time if forces depend on it, for a force or a measure that
+    /// uses some.
     fn inputs_of_forces(&self, unknown: Quantity) -> Vec<Quantity> {
-        let Quantity::Output(OutputSource::Force(force)) = unknown else {
-            return Vec::new();
-        };
+        let of = |force| self.inputs_of_force(force);
+        match unknown {
+            Quantity::Output(OutputSource::Force(force)) => of(force),
+            Quantity::Output(OutputSource::Derived(index)) => self.mechanism.derived[index]
+                .forces()
+                .flat_map(of)
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Returns the inputs of forces, and the time if forces depend on it, for a force.
+    fn inputs_of_force(&self, force: ForceQuantity) -> Vec<Quantity> {
         let forces = &self.mechanism.forces;
         let uses_time = |load: &Load| load.expressions().iter().any(|e| e.uses(Of::Time));
         let (count, depends_on_time) = match force {
-            ForceQuantity::Applied(force, _) => (0, uses_time(&forces[force].load)),
+            ForceQuantity::Applied(force, _) if !forces[force].load.is_input() => {
+                (0, uses_time(&forces[force].load))
+            }
             ForceQuantity::Inertia(_)
             | ForceQuantity::KineticEnergy
             | ForceQuantity::PotentialEnergy => (0, false),
@@ -288,6 +301,9 @@ impl<'a> DependencyTable<'a> {
                 for (signal, order) in measure.signals() {
                     let signal = Quantity::Output(OutputSource::Signal(signal, order));
                     origins.extend(&self.origins(signal));
+                }
+                for force in measure.forces() {
+                    self.add_origins(force, &mut origins);
                 }
             }
             Quantity::Output(OutputSource::Force(force)) => self.add_origins(force, &mut origins),

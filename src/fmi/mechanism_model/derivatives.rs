@@ -59,8 +59,11 @@ impl MechanismModel {
             }
         }
         self.accelerate_freedoms(&mut direction, &loads)?;
-        let is_force = |u: &Quantity| matches!(u, Quantity::Output(OutputSource::Force(_)));
-        let of_forces = if unknowns.iter().any(is_force) {
+        let uses_forces = |unknown: &Quantity| match unknown {
+            Quantity::Output(source) => source.uses_forces(&self.mechanism),
+            _ => false,
+        };
+        let of_forces = if unknowns.iter().any(uses_forces) {
             self.set_loads();
             let changes = (self.solution).force_changes(&mut self.solver, &direction, &loads);
             changes.map_err(without_value)?
@@ -74,14 +77,12 @@ impl MechanismModel {
         } = &self.solution;
         let sensitivity = self.solver.sensitivity(rates, driver_rates, &direction);
         let sensitivity = sensitivity.map_err(without_value)?;
+        let forces = self.solution.forces().zip(of_forces.as_ref());
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Parameter(parameter) => Some(sensitivity.parameter(parameter))
                 .filter(|change| change.is_finite())
                 .ok_or_else(|| sensitivity.fault()),
-            Quantity::Output(OutputSource::Force(force)) => {
-                of_forces.as_ref().map_or(Ok(0.0), |f| f.change(force))
-            }
-            Quantity::Output(source) => source.change(&self.mechanism, &sensitivity),
+            Quantity::Output(source) => source.change(&self.mechanism, &sensitivity, forces),
             Quantity::State(freedom, order) => Ok(order.of(direction.drivers[freedom.index()])),
             _ => unreachable!("unknowns are outputs, states and parameters"),
         };

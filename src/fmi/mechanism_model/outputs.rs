@@ -8,7 +8,7 @@ use crate::fmi::model::Groups;
 use crate::fmi::state::Phase;
 use crate::fmi::variable::{Variable, derivatives};
 use crate::kinematics::{ForceParts, OutputSource};
-use crate::mechanism::{Jet, Mechanism, Order, Signal};
+use crate::mechanism::{ForceQuantity, Jet, Mechanism, Order, Signal};
 
 /// Inputs, parameters, time, and counts of the last step.
 const SETTINGS: Groups = 1;
@@ -78,15 +78,14 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
         | Quantity::Substeps
         | Quantity::Proved => return SETTINGS,
         Quantity::Residual | Quantity::Rcond => return SOLVER,
-        Quantity::Output(OutputSource::Force(force)) => {
-            return match force {
-                _ if force.needs_efforts() => EFFORTS,
-                _ if force.needs_reactions() => REACTIONS,
-                _ => LOADS,
-            };
-        }
+        Quantity::Output(OutputSource::Force(force)) => return group_of_force(force),
         Quantity::Output(OutputSource::Derived(index)) => {
-            (DERIVED, mechanism.derived[index].order())
+            let measure = &mechanism.derived[index];
+            // The largest one, for which the others are solved too.
+            if let Some(group) = measure.forces().map(group_of_force).max() {
+                return group;
+            }
+            (DERIVED, measure.order())
         }
         Quantity::Output(OutputSource::Signal(signal, order)) => (group_of(signal), order),
         Quantity::State(_, order) => (COORDINATES, order),
@@ -95,6 +94,15 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
         group
     } else {
         group << 1
+    }
+}
+
+/// Returns the group of a force.
+fn group_of_force(force: ForceQuantity) -> Groups {
+    match force {
+        _ if force.needs_efforts() => EFFORTS,
+        _ if force.needs_reactions() => REACTIONS,
+        _ => LOADS,
     }
 }
 
@@ -254,7 +262,7 @@ impl MechanismModel {
                     ..driver_rates[freedom.index()]
                 }),
                 Quantity::Output(OutputSource::Derived(index)) => {
-                    solver.derived(index, rates, driver_rates)
+                    solver.derived(index, rates, driver_rates, solution.forces())
                 }
                 Quantity::Output(OutputSource::Force(force)) => solution.force(force),
                 _ => unreachable!("the list has no other quantities"),

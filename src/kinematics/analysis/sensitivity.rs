@@ -23,8 +23,8 @@ use crate::kinematics::singular::{Kind, NearPoint, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, Expression, Jet, MarkerId, Mechanism, Motion, MotionInForce,
-    Order, ParameterId, Signal,
+    DerivedMeasure, DriverId, Dual, Expression, ForceQuantity, Jet, MarkerId, Mechanism, Motion,
+    MotionInForce, Order, ParameterId, Signal,
 };
 
 /// A direction in the space of drivers and parameters.
@@ -104,8 +104,13 @@ impl Sensitivity<'_> {
         self.parameters[parameter.index()].value
     }
 
-    /// Returns a measure that is computed from others, with its change.
-    pub(in crate::kinematics) fn derived_value(&self, measure: &DerivedMeasure) -> Dual {
+    /// Returns a measure that is computed from others, with its change, for these forces with their
+    /// changes.
+    pub(in crate::kinematics) fn derived_value(
+        &self,
+        measure: &DerivedMeasure,
+        force: &impl Fn(ForceQuantity) -> Dual,
+    ) -> Dual {
         let signal = |signal: Signal, order: Order| {
             let varied = self.varied(signal);
             match order {
@@ -115,7 +120,7 @@ impl Sensitivity<'_> {
             }
         };
         let parameter = |id: ParameterId| self.parameter_value(id);
-        measure.evaluate(&parameter, &signal)
+        measure.evaluate(&parameter, &signal, force)
     }
 
     /// Returns the change of a parameter; the change of a derived one follows from the others.

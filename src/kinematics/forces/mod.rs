@@ -18,7 +18,6 @@
 //! |---|---|
 //! | `inertial` | masses, and what they demand |
 //! | `applied` | springs, dampers, actuators and loads |
-//! | `quantity` | [`ForceQuantity`]: the results by name |
 //! | `results` | their numbers |
 //! | `wrench` | force and torque that a joint exerts |
 //! | `self_stress` | reactions of least norm |
@@ -34,7 +33,6 @@ mod equations;
 mod indeterminate;
 mod inertial;
 mod lift_off;
-mod quantity;
 mod results;
 mod rounding;
 mod self_stress;
@@ -42,10 +40,9 @@ mod sensitivity;
 mod solve;
 mod wrench;
 
+pub use crate::mechanism::{ForceQuantity, Reported};
 pub use equations::EquationsOfMotion;
 pub(super) use indeterminate::indeterminate;
 pub use lift_off::LiftOff;
-pub use quantity::ForceQuantity;
 pub use sensitivity::ForceSensitivity;
 pub use solve::{ForceParts, Forces, KnownMotion};
-pub use wrench::Reported;

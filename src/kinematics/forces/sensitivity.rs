@@ -8,10 +8,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::applied::{Circumstances, Place, about_origin};
 use super::inertial::Masses;
-use super::quantity::ForceQuantity;
 use super::results::shares;
 use super::solve::{ForceParts, Forces, KnownMotion, Loads};
-use super::wrench::{Reported, Wrench};
+use super::wrench::Wrench;
 use crate::kinematics::analysis::{Direction, Sensitivity};
 use crate::kinematics::constraint::moving_configuration::{
     CurvesAlong, Varied, VariedConfiguration,
@@ -23,7 +22,9 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::{Kind, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
-use crate::mechanism::{DriverId, Dual, Load, Mechanism, Number, ParameterId};
+use crate::mechanism::{
+    DriverId, Dual, ForceQuantity, Load, Mechanism, Number, ParameterId, Reported,
+};
 
 /// The derivatives of all forces along a direction.
 #[derive(Debug)]
@@ -103,6 +104,11 @@ impl Places {
 type Entries = Vec<(usize, Dual)>;
 
 impl ForceSensitivity {
+    /// Returns the derivative of a quantity, not a number where it has none.
+    pub(in crate::kinematics) fn raw_change(&self, quantity: ForceQuantity) -> f64 {
+        self.values[self.places.of(quantity)]
+    }
+
     /// Returns the derivative of a quantity.
     ///
     /// # Errors

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::applied::{AppliedForces, Circumstances};
 use super::inertial::{DriverLoads, Masses, by_body};
-use super::quantity::{ForceQuantity, input_places};
 use super::results::{DriverForces, Results};
 use super::self_stress::SelfStresses;
 use super::wrench::{Contact, ReactionRows};
@@ -16,7 +15,9 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockState, JacobianFactors};
 use crate::kinematics::singular::{Kind, NearPoint, Place, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
-use crate::mechanism::{Driver, DriverId, Indeterminate, Jet, Mechanism, ParameterId};
+use crate::mechanism::{
+    Driver, DriverId, ForceQuantity, Indeterminate, Jet, Load, Mechanism, ParameterId,
+};
 
 /// The forces of a mechanism with dynamics at one pose.
 ///
@@ -565,4 +566,20 @@ pub(super) fn solve_rates(
         tangent: rates,
     };
     compiled.plan.solve_rates(&mut block_state, driver_rates);
+}
+
+/// Returns the indices, in a list of all inputs of forces, of those of each force.
+fn input_places(mechanism: &Mechanism) -> Vec<Option<usize>> {
+    let mut next = 0;
+    let places = mechanism.forces.iter().map(|force| {
+        let first = next;
+        if force.load.is_input() {
+            next += match force.load {
+                Load::Coordinate { .. } => 1,
+                Load::Marker { .. } => 3,
+            };
+        }
+        force.load.is_input().then_some(first)
+    });
+    places.collect()
 }

@@ -6,57 +6,7 @@ use crate::kinematics::constraint::configuration::{Configuration, perp};
 use crate::kinematics::constraint::{Coupling, Gradient};
 use crate::kinematics::origin::Origin;
 use crate::kinematics::system::System;
-use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number};
-
-/// Components of a reaction that a joint can exert.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reported {
-    /// A force at the second marker's point.
-    Force,
-    /// A force at the second marker's point and a torque.
-    ForceAndTorque,
-    /// A couple.
-    Torque,
-    /// The effort of an equation between coordinates, in place of the torque.
-    Effort,
-}
-
-impl Reported {
-    /// Returns the components of a type of joint.
-    #[must_use]
-    pub fn of(kind: &JointKind) -> Self {
-        match kind {
-            JointKind::Revolute
-            | JointKind::Slot
-            | JointKind::Link { .. }
-            | JointKind::RevoluteTranslational { .. }
-            | JointKind::Cam {
-                follower: CamFollower::Knife | CamFollower::Roller { .. },
-                ..
-            } => Self::Force,
-            JointKind::Translational
-            | JointKind::Weld
-            | JointKind::RackAndPinion { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Cam {
-                follower: CamFollower::Flat,
-                ..
-            } => Self::ForceAndTorque,
-            JointKind::Gear { .. } | JointKind::Belt { .. } => Self::Torque,
-            JointKind::Coupling(_) => Self::Effort,
-        }
-    }
-
-    /// Returns whether fx (component 0), fy (1) or torque (2) is among them.
-    #[must_use]
-    pub fn has(self, component: usize) -> bool {
-        match self {
-            Self::Force => component < 2,
-            Self::ForceAndTorque => true,
-            Self::Torque | Self::Effort => component == 2,
-        }
-    }
-}
+use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number, Reported};
 
 /// The sum of the generalized forces that rows exert on a joint's second body, or on ground.
 #[derive(Clone, Copy, Debug)]

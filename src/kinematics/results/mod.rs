@@ -10,5 +10,5 @@ mod output;
 mod signals;
 mod solution;
 
-pub use output::{Output, OutputSource, omitted_reactions};
+pub use output::{ForceNeed, Output, OutputSource, omitted_reactions};
 pub use solution::Solution;

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use crate::kinematics::analysis::Sensitivity;
 use crate::kinematics::error::Error;
-use crate::kinematics::forces::{ForceQuantity, Reported};
+use crate::kinematics::forces::{ForceQuantity, ForceSensitivity, Forces};
 use crate::kinematics::origin::Origin;
 use crate::kinematics::path::{Path, Rates};
 use crate::kinematics::solver::Solver;
 use crate::kinematics::system::System;
 use crate::mechanism::{
-    COMPONENTS, Coordinate, CoordinateEquation, CoordinateKind, DriverId, Indeterminate, Jet,
-    Joint, JointKind, Load, Mechanism, Order, SUFFIXES, Signal, Unit,
+    COMPONENTS, Coordinate, CoordinateKind, DriverId, Dual, Indeterminate, Jet, Mechanism, Order,
+    SUFFIXES, Signal, Unit,
 };
 
 /// A quantity that a run gives, such as `rod.omega`.
@@ -25,8 +25,32 @@ pub struct Output {
     pub source: OutputSource,
     /// Unit of the values, [`Unit::ONE`] if the file gives none.
     pub unit: Unit,
+    /// The forces that it needs.
+    pub needs: ForceNeed,
     /// The distance to the output before this one whose time derivative it is.
     pub derivative_of: Option<usize>,
+}
+
+/// Forces that an output needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ForceNeed {
+    /// None.
+    None,
+    /// Those that are known without reactions of joints.
+    Efforts,
+    /// Reactions too.
+    Reactions,
+}
+
+impl ForceNeed {
+    /// Returns the need of these forces.
+    fn of(forces: impl Iterator<Item = ForceQuantity>) -> Self {
+        let need = forces.map(|force| match force.needs_reactions() {
+            true => Self::Reactions,
+            false => Self::Efforts,
+        });
+        need.max().unwrap_or(Self::None)
+    }
 }
 
 /// Meaning of an output.
@@ -42,7 +66,8 @@ pub enum OutputSource {
 
 impl OutputSource {
     /// Returns the change of the value along the direction of a sensitivity of this mechanism
-    /// \[SI\], not a number for a force and for a measure without a value.
+    /// \[SI\], not a number for a measure without a value. A force, and a measure that uses one, have
+    /// one if `forces` are there with their changes along this direction.
     ///
     /// # Errors
     ///
@@ -52,12 +77,19 @@ impl OutputSource {
         self,
         mechanism: &Mechanism,
         sensitivity: &Sensitivity<'_>,
+        forces: Option<(&Forces, &ForceSensitivity)>,
     ) -> Result<f64, Error> {
         let change = match self {
             Self::Signal(signal, order) => order.of(sensitivity.signal(signal)),
             Self::Derived(index) => {
                 let measure = &mechanism.derived[index];
-                let value = sensitivity.derived_value(measure);
+                let force = |quantity| match forces {
+                    Some((forces, changes)) => {
+                        Dual::new(forces.value(quantity), [changes.raw_change(quantity)])
+                    }
+                    None => Dual::constant(f64::NAN),
+                };
+                let value = sensitivity.derived_value(measure, &force);
                 if !value.value.is_finite() {
                     return Ok(f64::NAN);
                 }
@@ -65,6 +97,11 @@ impl OutputSource {
                 let exist = |(signal, order): (Signal, Order)| {
                     order.of(sensitivity.signal(signal)).is_finite()
                 };
+                if let Some((_, changes)) = forces {
+                    for force in measure.forces() {
+                        changes.change(force)?;
+                    }
+                }
                 let mut parameters = measure.value.parameters();
                 if !value.first().is_finite()
                     && signals.all(exist)
@@ -76,12 +113,24 @@ impl OutputSource {
                 }
                 value.first()
             }
-            Self::Force(_) => return Ok(f64::NAN),
+            Self::Force(quantity) => {
+                return forces.map_or(Ok(f64::NAN), |(_, changes)| changes.change(quantity));
+            }
         };
         if change.is_finite() {
             Ok(change)
         } else {
             Err(sensitivity.fault())
+        }
+    }
+
+    /// Returns whether it is a force, or a measure that uses one.
+    #[must_use]
+    pub fn uses_forces(self, mechanism: &Mechanism) -> bool {
+        match self {
+            Self::Signal(..) => false,
+            Self::Derived(index) => mechanism.derived[index].forces().next().is_some(),
+            Self::Force(_) => true,
         }
     }
 
@@ -133,17 +182,25 @@ impl Output {
         list.0
     }
 
-    /// Returns the value at the solver's pose \[SI\], not a number for a force. See
-    /// [`Solver::signal`].
+    /// Returns the value at the solver's pose \[SI\], not a number for a force, and for a measure that
+    /// uses one, unless `forces` are there. See [`Solver::signal`].
     #[inline]
     #[must_use]
-    pub fn value(&self, solver: &Solver, rates: &Rates, driver_rates: &[Jet]) -> f64 {
+    pub fn value(
+        &self,
+        solver: &Solver,
+        rates: &Rates,
+        driver_rates: &[Jet],
+        forces: Option<&Forces>,
+    ) -> f64 {
         match self.source {
             OutputSource::Signal(signal, order) => {
                 order.of(solver.signal(signal, rates, driver_rates))
             }
-            OutputSource::Derived(index) => solver.derived(index, rates, driver_rates),
-            OutputSource::Force(_) => f64::NAN,
+            OutputSource::Derived(index) => solver.derived(index, rates, driver_rates, forces),
+            OutputSource::Force(quantity) => {
+                forces.map_or(f64::NAN, |forces| forces.value(quantity))
+            }
         }
     }
 
@@ -158,10 +215,16 @@ impl Output {
         }
     }
 
-    /// Returns whether it is a reaction of a joint or a constraint.
+    /// Returns whether it is a force or a measure that uses one.
     #[must_use]
-    pub fn is_reaction(&self) -> bool {
-        matches!(self.source, OutputSource::Force(quantity) if quantity.needs_reactions())
+    pub fn uses_forces(&self) -> bool {
+        self.needs > ForceNeed::None
+    }
+
+    /// Returns whether it is a reaction of a joint or a constraint or a measure that uses one.
+    #[must_use]
+    pub fn uses_reactions(&self) -> bool {
+        self.needs == ForceNeed::Reactions
     }
 
     /// Returns whether it is a force.
@@ -194,6 +257,7 @@ impl List {
                     description: of_order(order, &named.description),
                     source: OutputSource::Signal(named.signal, order),
                     unit: named.units[order as usize],
+                    needs: ForceNeed::None,
                     derivative_of: (order > Order::Position).then_some(signals.len()),
                 });
             }
@@ -253,135 +317,47 @@ impl List {
 
     fn add_derived_and_forces(&mut self, mechanism: &Mechanism, omitted: &[Origin]) {
         let derived = mechanism.derived.iter().enumerate();
+        let derived = derived.filter(|(_, measure)| {
+            let mut forces = measure.forces();
+            !forces.any(|force| is_among(omitted, force))
+        });
         self.0.extend(derived.map(|(index, measure)| Output {
             name: measure.name.clone(),
             description: measure.description.clone(),
             source: OutputSource::Derived(index),
             unit: measure.unit.unwrap_or(Unit::ONE),
+            needs: ForceNeed::of(measure.forces()),
             derivative_of: None,
         }));
-        if mechanism.has_dynamics() {
-            self.add_driver_forces(mechanism);
-            self.add_reactions(mechanism, omitted);
-            let given = mechanism.given_forces().into_iter();
-            self.0.extend(given.map(|given| Output {
-                name: given.name,
-                description: given.description,
-                source: OutputSource::Force(ForceQuantity::Applied(given.force, given.component)),
-                unit: given.unit,
-                derivative_of: None,
-            }));
-            self.add_energies();
-        }
-    }
-
-    fn add_force(
-        &mut self,
-        owner: &str,
-        suffix: &str,
-        description: String,
-        quantity: ForceQuantity,
-        unit: Unit,
-    ) {
-        self.0.push(Output {
-            name: format!("{owner}.{suffix}"),
-            description,
-            source: OutputSource::Force(quantity),
-            unit,
-            derivative_of: None,
-        });
-    }
-
-    fn add_driver_forces(&mut self, mechanism: &Mechanism) {
-        let drivers = mechanism.drivers.iter().enumerate();
-        for (index, driver) in drivers.filter(|(_, driver)| !driver.is_free()) {
-            let (id, kind) = (DriverId(index), driver.coordinate.kind);
-            let (name, effort) = (&driver.name, kind.effort_unit());
-            let exerted = format!("{} that driver `{name}` exerts", kind.effort_word());
-            let quantity = ForceQuantity::Effort(id);
-            self.add_force(name, "effort", exerted.clone(), quantity, effort);
-            let power = format!("power of driver `{name}`");
-            self.add_force(name, "power", power, ForceQuantity::Power(id), Unit::WATT);
-            if driver.is_input {
-                let felt = format!("inertia that driver `{name}` feels");
-                let quantity = ForceQuantity::Inertia(id);
-                self.add_force(name, "inertia", felt, quantity, kind.inertia_unit());
-                let bias = format!("{exerted} if no input accelerates");
-                self.add_force(name, "bias", bias, ForceQuantity::Bias(id), effort);
+        let is_wanted = |quantity| match quantity {
+            ForceQuantity::Reaction(joint, _) | ForceQuantity::Share(joint, _) => {
+                mechanism.outputs.joints.contains(&joint)
             }
-        }
-    }
-
-    /// Adds the reactions of joints and constraints but the omitted ones.
-    fn add_reactions(&mut self, mechanism: &Mechanism, omitted: &[Origin]) {
-        for &index in &mechanism.outputs.joints {
-            let joint = &mechanism.joints[index];
-            if omitted.contains(&Origin::Joint(index)) {
-                continue;
-            }
-            let reported = Reported::of(&joint.kind);
-            let body = mechanism.markers[joint.to.index()].body;
-            let body = body.map_or("ground", |body| &mechanism.bodies[body.index()].name);
-            if let JointKind::Coupling(equation) = &joint.kind {
-                self.add_efforts(index, joint, equation);
-                continue;
-            }
-            for (component, suffix) in Load::COMPONENTS.into_iter().enumerate() {
-                if reported.has(component) {
-                    let (word, unit) = match component {
-                        0 => ("force along x", Unit::NEWTON),
-                        1 => ("force along y", Unit::NEWTON),
-                        _ => ("torque", Unit::NEWTON_METRE),
-                    };
-                    let description = format!("{word} of joint `{}` on `{body}`", joint.name);
-                    let quantity = ForceQuantity::Reaction(index, component);
-                    self.add_force(&joint.name, suffix, description, quantity, unit);
-                }
-            }
-        }
-        for &index in &mechanism.outputs.constraints {
-            if omitted.contains(&Origin::Constraint(index)) {
-                continue;
-            }
-            let held = &mechanism.constraints[index];
-            let kind = held.coordinate.kind;
-            let word = kind.effort_word();
-            let description = format!("{word} that constraint `{}` exerts", held.name);
-            let (quantity, unit) = (ForceQuantity::Held(index), kind.effort_unit());
-            self.add_force(&held.name, "effort", description, quantity, unit);
-        }
-    }
-
-    /// Adds the effort of a coupling, and its efforts along its coordinates.
-    fn add_efforts(&mut self, index: usize, joint: &Joint, equation: &CoordinateEquation) {
-        let name = &joint.name;
-        let description =
-            format!("effort of coupling `{name}`, conjugate to left - right of its equation");
-        let kind = match equation.is_angle {
-            true => CoordinateKind::Angle,
-            false => CoordinateKind::Distance,
+            ForceQuantity::Held(held) => mechanism.outputs.constraints.contains(&held),
+            _ => true,
         };
-        let quantity = ForceQuantity::Reaction(index, 2);
-        self.add_force(name, "effort", description, quantity, kind.effort_unit());
-        for (place, (coordinate, Coordinate { kind, .. })) in
-            equation.coordinates.iter().enumerate()
-        {
-            let word = kind.effort_word();
-            let description = format!("{word} that coupling `{name}` exerts along `{coordinate}`");
-            let owner = format!("{name}.{coordinate}");
-            let quantity = ForceQuantity::Share(index, place);
-            self.add_force(&owner, "effort", description, quantity, kind.effort_unit());
-        }
+        let forces = mechanism.named_forces().into_iter();
+        let forces =
+            forces.filter(|force| is_wanted(force.quantity) && !is_among(omitted, force.quantity));
+        self.0.extend(forces.map(|force| Output {
+            name: force.name,
+            description: force.description,
+            source: OutputSource::Force(force.quantity),
+            unit: force.unit,
+            needs: ForceNeed::of(std::iter::once(force.quantity)),
+            derivative_of: None,
+        }));
     }
+}
 
-    fn add_energies(&mut self) {
-        let (unit, kinetic) = (Unit::JOULE, "kinetic energy of all bodies");
-        let quantity = ForceQuantity::KineticEnergy;
-        self.add_force("energy", "kinetic", kinetic.to_owned(), quantity, unit);
-        let potential =
-            "potential energy of gravity, zero at ground's origin, and of springs".to_owned();
-        let quantity = ForceQuantity::PotentialEnergy;
-        self.add_force("energy", "potential", potential, quantity, unit);
+/// Returns whether a quantity is a reaction of one of these joints and constraints.
+fn is_among(origins: &[Origin], quantity: ForceQuantity) -> bool {
+    match quantity {
+        ForceQuantity::Reaction(joint, _) | ForceQuantity::Share(joint, _) => {
+            origins.contains(&Origin::Joint(joint))
+        }
+        ForceQuantity::Held(held) => origins.contains(&Origin::Constraint(held)),
+        _ => false,
     }
 }
 

@@ -1,5 +1,6 @@
 //! Values of signals, and of measures that are computed from them, at the solver's pose.
 
+use crate::kinematics::forces::Forces;
 use crate::kinematics::path::Rates;
 use crate::kinematics::solver::Solver;
 use crate::mechanism::{Jet, Order, ParameterId, Signal};
@@ -30,12 +31,20 @@ impl Solver {
 
     /// Returns the value of a measure that is computed from others, by its index in
     /// [`Mechanism::derived`](crate::mechanism::Mechanism::derived). The rates are those of
-    /// [`signal`](Self::signal). Not finite where it has no value. Allocates nothing.
+    /// [`signal`](Self::signal), `forces` those of the pose. Not finite where it has no value, or for
+    /// want of a force. Allocates nothing.
     #[must_use]
-    pub fn derived(&self, index: usize, rates: &Rates, driver_rates: &[Jet]) -> f64 {
+    pub fn derived(
+        &self,
+        index: usize,
+        rates: &Rates,
+        driver_rates: &[Jet],
+        forces: Option<&Forces>,
+    ) -> f64 {
         self.mechanism().derived[index].evaluate(
             &|parameter: ParameterId| self.pose().parameters[parameter.index()],
             &|signal, order: Order| order.of(self.signal(signal, rates, driver_rates)),
+            &|quantity| forces.map_or(f64::NAN, |forces| forces.value(quantity)),
         )
     }
 }

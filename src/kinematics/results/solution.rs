@@ -1,6 +1,6 @@
 //! Rates and forces at the pose of a solver.
 
-use super::output::{Output, OutputSource};
+use super::output::Output;
 use crate::kinematics::analysis::Direction;
 use crate::kinematics::error::Error;
 use crate::kinematics::forces::{
@@ -8,7 +8,7 @@ use crate::kinematics::forces::{
 };
 use crate::kinematics::path::Rates;
 use crate::kinematics::solver::Solver;
-use crate::mechanism::{DriverId, Jet};
+use crate::mechanism::{DerivedMeasure, DriverId, Jet};
 
 /// The rates at the pose of a [`Solver`] and, where they are [sought](Self::seek_forces), the
 /// forces.
@@ -82,7 +82,11 @@ impl Solution {
         self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
         let outputs = &solver.mechanism().outputs;
-        if outputs.joints.is_empty() && outputs.constraints.is_empty() {
+        let mut measures = solver.mechanism().derived.iter();
+        if outputs.joints.is_empty()
+            && outputs.constraints.is_empty()
+            && !measures.any(DerivedMeasure::needs_reactions)
+        {
             self.leave_out_reactions();
         }
     }
@@ -155,10 +159,7 @@ impl Solution {
     /// Returns the value of an output \[SI\], not a number for a force that is not sought.
     #[must_use]
     pub fn value(&self, solver: &Solver, output: &Output) -> f64 {
-        match output.source {
-            OutputSource::Force(quantity) => self.force(quantity),
-            _ => output.value(solver, &self.rates, &self.driver_rates),
-        }
+        output.value(solver, &self.rates, &self.driver_rates, self.forces())
     }
 
     /// Returns the changes of outputs along a direction \[SI\], not a number for forces that are
@@ -177,12 +178,9 @@ impl Solution {
         let of_forces = self.force_changes(solver, direction, &stay)?;
         let mechanism = solver.mechanism().clone();
         let change = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
-        let changes = outputs
-            .iter()
-            .map(|output| match (output.source, &of_forces) {
-                (OutputSource::Force(quantity), Some(forces)) => forces.change(quantity),
-                (source, _) => source.change(&mechanism, &change),
-            });
+        let forces = self.forces().zip(of_forces.as_ref());
+        let outputs = outputs.iter();
+        let changes = outputs.map(|output| output.source.change(&mechanism, &change, forces));
         changes.collect()
     }
 

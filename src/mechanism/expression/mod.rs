@@ -36,7 +36,7 @@ pub(super) use reserved::is_taken;
 pub(super) use reserved::taken;
 
 use super::number::{self, Interval, Jet3, Number, Unary};
-use super::{Order, ParameterId, Signal};
+use super::{ForceQuantity, Order, ParameterId, Signal};
 
 /// Variable of an expression, besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +51,8 @@ pub enum Variable {
     Velocity,
     /// A signal of the mechanism, in a measure that is computed.
     Signal(Signal, Order),
+    /// A force, an energy or an inertia, in a measure that is computed.
+    Force(ForceQuantity),
     /// A coordinate of a coupling, by its place among these.
     Coordinate(usize),
     /// The argument of a coupling's law, `x` there.
@@ -67,6 +69,7 @@ impl Variable {
             Self::Position => "position",
             Self::Velocity => "velocity",
             Self::Signal(..) => "a signal",
+            Self::Force(_) => "a force",
             Self::Coordinate(_) => "a coordinate",
             Self::Argument => "x",
         }

@@ -2,7 +2,7 @@
 
 use crate::mechanism::expression::MovingNames;
 use crate::mechanism::syntax::Value;
-use crate::mechanism::{DerivedMeasure, Mechanism, Unit, Variable};
+use crate::mechanism::{DerivedMeasure, ForceQuantity, Mechanism, Unit, Variable};
 
 use super::context::Context;
 use super::coordinate::{CoordinateKeys, MeasureKeys};
@@ -16,7 +16,7 @@ table! {
     /// An output computed from others, without velocity and acceleration.
     struct DerivedKeys<'a> {
         /// Expression over the parameters and the variables of bodies, markers, drivers and
-        /// measures, such as "-travel.velocity/shock.velocity".
+        /// measures and over forces, such as "-travel.velocity/shock.velocity".
         #[required("\"-travel.velocity/shock.velocity\"")]
         value: &'a Value<'a> = Unread,
         /// SI unit of the value.
@@ -67,12 +67,23 @@ impl<'a> Context<'a> {
             let variable = Variable::Signal(*signal, *order);
             (name.as_str(), variable)
         });
+        let forces = mechanism.named_forces();
+        let given = mechanism.force_inputs();
+        let forces = forces
+            .iter()
+            .map(|force| (force.name.as_str(), force.quantity));
+        let inputs = given.iter().map(|input| {
+            let quantity = ForceQuantity::Applied(input.force, input.component);
+            (input.name.as_str(), quantity)
+        });
+        let forces = forces.chain(inputs);
+        let forces = forces.map(|(name, quantity)| (name, Variable::Force(quantity)));
         let signals = MovingNames {
-            known: signals.collect(),
+            known: signals.chain(forces).collect(),
             dimensions: Vec::new(),
             computed: entries.iter().map(|entry| entry.name()).collect(),
-            usable: "a measure may use parameters and the variables of bodies, markers, drivers and \
-                     measures with a coordinate",
+            usable: "a measure may use parameters, the variables of bodies, markers, drivers and \
+                     measures with a coordinate, and forces where bodies have masses",
             law: None,
         };
         let read = |entry: &Entry<'a>| {

@@ -44,6 +44,8 @@ def properties(motion):
     depth = truth(None, {"crank_angle": Taylor.time(u)})["depth"]
     force = STIFFNESS * np.maximum(depth.value - WORK_DEPTH, 0)
     largest = STIFFNESS * (2 * LINK - WORK_DEPTH)
+    # The rod has a pin at each end and no load between: its force is along it.
+    lever = CRANK * np.abs(np.sin(motion["rod.phi"] - u))
     with np.errstate(divide="ignore"):
         reciprocal = 1 / motion["advantage"]
     return {
@@ -52,6 +54,8 @@ def properties(motion):
         "and no acceleration": motion["ram.ay"][lowest] / (omega**2 * LINK),
         "work": (motion["work.effort"] + force) / largest,
         "effort": (motion["crank_angle.effort"] - force * depth.first) / (largest * CRANK),
+        "pin force": (motion["pin_force"] * lever - np.abs(motion["crank_angle.effort"]))
+        / (largest * CRANK),
         "advantage": reciprocal - depth.first / CRANK,
     }
 

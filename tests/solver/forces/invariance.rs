@@ -424,11 +424,13 @@ fn ratio_on_ground(kind: &JointKind, number: &impl Fn(&Expression) -> f64) -> Op
             sizes,
             internal,
             carrier: None,
+            ..
         } => (sizes, *internal),
         JointKind::Belt {
             sizes,
             crossed,
             carrier: None,
+            ..
         } => (sizes, !*crossed),
         _ => return None,
     };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::{Error, Path, Solver};
+use biela::kinematics::{Error, Fit, Path, Solver};
 use biela::mechanism::Mechanism;
 
 use crate::common::parse;
@@ -365,7 +365,12 @@ fn expect_slip(name: &str, text: &str, expected: &[&str], gap: f64) -> Option<[f
     assert_eq!(Some(&open.origin), origins.last(), "{name}");
     let off = (open.gap - gap).abs();
     assert!(off <= FOUR_DIGITS * gap + ROUNDING, "{name}: {error}");
-    fit.as_ref().map(|fit| [fit.length, fit.present])
+    match fit.as_deref() {
+        Some(Fit::Length {
+            length, present, ..
+        }) => Some([*length, *present]),
+        _ => None,
+    }
 }
 
 /// A third crank that is too long or too short by whatever length is told in the same words: the

@@ -33,6 +33,10 @@ impl DerivedRange {
     ) -> Vec<Self> {
         let speed = speed.unwrap_or(UNIT_SPEED);
         let mut follower = Follower::new(solver, driver, range, speed);
+        let mut measures = follower.mechanism.derived.iter();
+        if measures.any(|measure| measure.forces().next().is_some()) {
+            follower.solution.seek_forces(follower.solver);
+        }
         let derived = 0..follower.mechanism.derived.len();
         derived
             .map(|index| Self::new(&mut follower, index, range, speed))
@@ -45,7 +49,12 @@ impl DerivedRange {
             let Follower {
                 solver, solution, ..
             } = follower;
-            let value = solver.derived(index, &solution.rates, &solution.driver_rates);
+            let value = solver.derived(
+                index,
+                &solution.rates,
+                &solution.driver_rates,
+                solution.forces(),
+            );
             value.is_finite().then_some(value)
         };
         let samples = range.samples.iter().map(|sample| {
