@@ -24,7 +24,10 @@ if TYPE_CHECKING:
         FileError,
         MechanismError,
         MechanismWarning,
+        MissingFileError,
+        MissingPackageError,
         StoppedError,
+        UnknownNameError,
         UsageError,
     )
     from .synthesis import Fit, Target, fit, points
@@ -60,6 +63,8 @@ __all__ = [
     "Mechanism",
     "MechanismError",
     "MechanismWarning",
+    "MissingFileError",
+    "MissingPackageError",
     "Mode",
     "Modes",
     "Parameter",
@@ -71,6 +76,7 @@ __all__ = [
     "Sweep",
     "Target",
     "Tolerances",
+    "UnknownNameError",
     "UsageError",
     "__version__",
     "check",

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _biela
-from .errors import UsageError
+from .optional import needed
 
 SETTLED = 1e-9
 """Change of timing [rad or m] that ends its improvement: the cost, at its least value, has squares of
@@ -35,7 +35,7 @@ class Limits:
 
 
 class _Ended(Exception):
-    """End of a search that SciPy does not see."""
+    """End of a search that SciPy does not see, with its reason and whether it is a success."""
 
 
 class Attempt:
@@ -49,6 +49,10 @@ class Attempt:
         self.evaluations = 0
         """Number of times that residuals were asked for."""
         self._ended = False
+        self.success = False
+        """Whether the search came to its end."""
+        self.message = "the search has not begun"
+        """Reason why the search is where it is."""
 
     @property
     def cost(self) -> float:
@@ -57,10 +61,7 @@ class Attempt:
 
     def improve(self, limits: Limits, evaluations: int) -> None:
         """Improves the parameters by this number of evaluations at most."""
-        try:
-            from scipy.optimize import least_squares
-        except ImportError:
-            raise UsageError("fit needs the package SciPy: pip install scipy") from None
+        least_squares = needed("scipy.optimize", "fit").least_squares
         if self._ended:
             return
         varied = limits.low < limits.high
@@ -76,7 +77,7 @@ class Attempt:
             found = self._try(all_of(some))
             if found is None:
                 if not begun:  # SciPy needs residuals to begin with.
-                    raise _Ended
+                    raise _Ended("no parameters near these reach all targets", False)
                 return np.full_like(self.residuals, np.inf)
             begun = True
             return found
@@ -84,15 +85,15 @@ class Attempt:
         def derivatives(some: NDArray) -> NDArray:
             found = self._keep(all_of(some))[:, varied]
             if self.cost <= limits.stop_at:
-                raise _Ended
+                raise _Ended("the cost is not above `stop_at`", True)
             if not (found.T @ self.residuals).any():
                 self._settle(evaluations)
-                raise _Ended
+                raise _Ended("no small change of a parameter lowers the cost", True)
             return found
 
         try:
             if self._try(self.parameters) is None:
-                raise _Ended
+                raise _Ended("the mechanism does not reach all targets", False)
             derivatives(self.parameters[varied])  # Ends where there is nothing to improve.
             tolerance = max(limits.tolerance, np.finfo(float).eps)
             found = least_squares(
@@ -107,9 +108,12 @@ class Attempt:
                 method=self.method,
                 max_nfev=evaluations,
             )
-            self._ended = found.status != 0
-        except _Ended:
+            # SciPy's status is 0 where it has used up its evaluations.
+            self._ended = self.success = found.status != 0
+            self.message = found.message
+        except _Ended as end:
             self._ended = True
+            self.message, self.success = end.args
 
     def _try(self, parameters: NDArray) -> NDArray | None:
         """Returns the residuals at parameters; `None` where the mechanism does not get to."""
@@ -155,7 +159,7 @@ class Attempt:
         """Keeps the unknowns tried last, and their derivatives."""
         kept = self.moving.keep()
         if kept is None:
-            raise _Ended
+            raise _Ended("the residuals have no finite derivatives there", False)
         unknowns, leaders, curvatures, self.residuals = self._tried
         count = len(self.parameters)
         self.parameters, self.timing = np.split(unknowns, [count])

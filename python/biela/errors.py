@@ -13,8 +13,23 @@ class UsageError(Error, ValueError):
     """Exception for a wrong argument: an unknown name, a value beyond its limits."""
 
 
+class UnknownNameError(UsageError, KeyError):
+    """Exception for a name that a result does not have; also a `KeyError`, as of any mapping."""
+
+    # A `KeyError` shows its text in quotes.
+    __str__ = Exception.__str__
+
+
+class MissingPackageError(ImportError, UsageError):
+    """Exception for an optional package that is not installed; also an `ImportError`."""
+
+
 class FileError(Error, OSError):
     """Exception for a file that cannot be read, or an FMU that cannot be made."""
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """Exception for a mechanism file that does not exist; also a `FileNotFoundError`."""
 
 
 class AssemblyError(Error):

@@ -6,7 +6,8 @@ import json
 import operator
 import os
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -18,11 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 from . import _biela
 from .errors import (
     Diagnostic,
+    FileError,
     MechanismWarning,
+    MissingFileError,
     StoppedError,
     UsageError,
     diagnostics,
 )
+from .optional import needed
 from .rates import differentiate
 from .results import (
     ChangePoint,
@@ -36,6 +40,7 @@ from .results import (
     Result,
     StateSpace,
     Sweep,
+    places,
 )
 
 Drive = Mapping[str, Any]
@@ -81,13 +86,27 @@ class Driver:
     """Whether values mean angles modulo one turn."""
 
 
+@contextmanager
+def _reading(path: str) -> Iterator[None]:
+    """Tells a file that does not exist from others that cannot be read."""
+    try:
+        yield
+    except FileError as error:
+        if os.path.exists(path):
+            raise
+        raise MissingFileError(*error.args) from None
+
+
 def load(path: str | os.PathLike) -> Mechanism:
     """Reads a mechanism file; the tables that it names are beside it.
 
-    Raises `MechanismError` with all errors of the file; its warnings are warnings of Python.
+    Raises `MechanismError` with all errors of the file; its warnings are warnings of Python. A file
+    that does not exist raises `MissingFileError`, a `FileNotFoundError`.
     """
     name = os.fspath(path)
-    return Mechanism(_biela.Mechanism(name, None, name), name)
+    with _reading(name):
+        inner = _biela.Mechanism(name, None, name)
+    return Mechanism(inner, name)
 
 
 def loads(text: str, name: str = "mechanism.toml") -> Mechanism:
@@ -106,7 +125,8 @@ def check(source: str | os.PathLike, modes: bool = False) -> Report:
     if "\n" in name:
         found = _biela.Mechanism.check("mechanism.toml", name, None, modes)
     else:
-        found = _biela.Mechanism.check(name, None, name, modes)
+        with _reading(name):
+            found = _biela.Mechanism.check(name, None, name, modes)
     return Report(json.loads(found))
 
 
@@ -181,7 +201,7 @@ class Mechanism:
         drive: Drive | None = None,
         parameters: Parameters | None = None,
         variables: Sequence[str] | None = None,
-        gradient: Sequence[str] = (),
+        gradient: str | Sequence[str] = (),
         stop: str = "raise",
         inputs: Drive | None = None,
     ) -> Result:
@@ -196,7 +216,8 @@ class Mechanism:
 
         `variables` narrows the result to these variables, or to all of a body, marker, driver or
         measure. `gradient` names parameters by which the variables are differentiated, exactly, at
-        each time, and starts of freedoms such as `swing.velocity`, which `parameters` may set too.
+        each time, and starts of freedoms such as `swing.velocity`, which `parameters` may set too;
+        `"all"` stands for all parameters that can be set.
 
         A motion that cannot go on raises `StoppedError`, or with `stop="keep"` returns a result
         with fewer rows and its `stopped`.
@@ -207,18 +228,23 @@ class Mechanism:
         """
         if stop not in ("raise", "keep"):
             raise UsageError(f"stop is {stop!r}; expected 'raise' or 'keep'")
-        motions = self._motions(t, _joined(drive, inputs))
+        drive = _joined(drive, inputs)
+        motions = self._motions(t, drive)
         names, units, indices = self._chosen(variables)
+        if gradient == "all":
+            gradient = [name for name, parameter in self.parameters.items() if not parameter.derived]
         by = [gradient] if isinstance(gradient, str) else list(gradient)
         raw = self._inner.run(motions, _given(parameters), indices, by)
         rows = raw.rows
         result = Result(
             raw,
             np.asarray(motions[0])[:rows],
+            not _timeless(t, drive),
             dict(zip(names, units)),
             raw.values().reshape(rows, len(names)),
             by,
             raw.gradient().reshape(rows, len(by), len(names)),
+            self._moving(motions[1]),
         )
         for notice in raw.notices:
             warnings.warn(notice, MechanismWarning, stacklevel=2)
@@ -253,7 +279,8 @@ class Mechanism:
         >>> sweep.ok
         array([ True,  True, False])
         """
-        motions = self._motions(t, _joined(drive, inputs))
+        drive = _joined(drive, inputs)
+        motions = self._motions(t, drive)
         names, units, indices = self._chosen(variables)
         if not names:
             raise UsageError("variables: no variable is named")
@@ -288,10 +315,13 @@ class Mechanism:
                 bar.update(part.stop - first)
         if bar is not None:
             bar.close()
+        known = self.parameters
         return Sweep(
             np.asarray(motions[0]),
+            not _timeless(t, drive),
             dict(zip(names, units)),
             series,
+            {name: known[name].unit for name in series},
             shape,
             values,
             rows,
@@ -449,15 +479,7 @@ class Mechanism:
         if wanted is None:
             indices = list(range(len(columns)))
         else:
-            wanted = [wanted] if isinstance(wanted, str) else list(wanted)
-            indices = []
-            for name in wanted:
-                belongs = lambda known: known == name or known.startswith(f"{name}.")
-                found = [index for index, (known, _) in enumerate(columns) if belongs(known)]
-                if not found:
-                    known = [known for known, _ in columns]
-                    raise UsageError(f"variables: {_biela.unknown_name('variable', name, known)}")
-                indices += [index for index in found if index not in indices]
+            indices = places([name for name, _ in columns], wanted)
         return [columns[i][0] for i in indices], [columns[i][1] for i in indices], indices
 
     def _start(self, drive: Drive | None) -> tuple[list[float], list]:
@@ -482,7 +504,7 @@ class Mechanism:
         if len(lengths) > 1:
             counts = ", ".join(map(str, sorted(lengths)))
             raise UsageError(f"drive: the arrays have different lengths: {counts}")
-        timeless = t is None and bool(orders)
+        timeless = _timeless(t, drive)
         if t is not None:
             times = np.atleast_1d(_numbers("t", t))
             if times.ndim != 1:
@@ -510,6 +532,18 @@ class Mechanism:
             motions.append((name, [np.ascontiguousarray(order) for order in full]))
         return times, motions
 
+    def _moving(self, motions: list) -> tuple[str, str, NDArray] | None:
+        """Returns name, unit and values of the driver whose values change, if it is one."""
+        changing = [
+            (name, values[0])
+            for name, values in motions
+            if not isinstance(values, str) and np.ptp(values[0]) > 0
+        ]
+        if len(changing) != 1:
+            return None
+        name, values = changing[0]
+        return name, self.variables.get(f"{name}.position", ""), values
+
     def _missing_rates(
         self, times: NDArray, given: list[NDArray], constant: bool, timeless: bool
     ) -> list[NDArray]:
@@ -532,6 +566,11 @@ def _joined(drive: Drive | None, inputs: Drive | None) -> Drive:
     if twice:
         raise UsageError(f"inputs: `{min(twice)}` is in `drive` too")
     return {**(drive or {}), **(inputs or {})}
+
+
+def _timeless(t: ArrayLike | None, drive: Drive | None) -> bool:
+    """Whether a run has poses without times: values of drivers, and no times for them."""
+    return t is None and any(not isinstance(value, str) for value in (drive or {}).values())
 
 
 def _given(parameters: Parameters | None) -> list[tuple[str, float | str]]:
@@ -593,11 +632,7 @@ def _orders(name: str, value: Any) -> list[NDArray]:
 
 def _progress_bar(count: int):
     """Returns a bar of tqdm."""
-    try:
-        from tqdm.auto import tqdm
-    except ModuleNotFoundError:
-        raise UsageError("progress needs the package tqdm: pip install tqdm") from None
-    return tqdm(total=count, unit="variant")
+    return needed("tqdm.auto", "progress").tqdm(total=count, unit="variant")
 
 
 def _reread(text: str, path: str | None, has_tables: bool) -> Mechanism:

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import Diagnostic, UsageError
+from . import _biela, charts, tables
+from .errors import Diagnostic, UnknownNameError, UsageError
+from .optional import needed
 
 
-def _unknown(name: Any, known: list[str], kind: str = "variable") -> UsageError:
-    from . import _biela
+def _unknown(name: Any, known: list[str], kind: str = "variable") -> UnknownNameError:
+    return UnknownNameError(_biela.unknown_name(kind, str(name), known))
 
-    return UsageError(_biela.unknown_name(kind, str(name), known))
+
+def places(known: Sequence[str], wanted: str | Sequence[str]) -> list[int]:
+    """Returns where the wanted variables stand, or all of a body, marker, driver or measure."""
+    found: list[int] = []
+    for name in [wanted] if isinstance(wanted, str) else wanted:
+        own = [i for i, known_name in enumerate(known) if f"{known_name}.".startswith(f"{name}.")]
+        if not own:
+            raise UsageError(f"variables: {_biela.unknown_name('variable', name, list(known))}")
+        found += [place for place in own if place not in found]
+    return found
 
 
 class Drawing(str):
@@ -32,14 +43,17 @@ class Result(Mapping):
     Values are in SI units; `units` tells which.
     """
 
-    def __init__(self, raw, t, units, values, by, gradient):
+    def __init__(self, raw, t, timed, units, values, by, gradient, moving):
         self._raw = raw
         self.t: NDArray = t
-        """Times [s]."""
+        """Times [s]; those of the start for poses without times."""
+        self.timed: bool = timed
+        """Whether the rows have times of their own."""
         self.units: dict[str, str] = units
         """Units by the variables' names."""
         self._values = values
         self._places = {name: place for place, name in enumerate(units)}
+        self._moving = moving
         self.gradient = Gradient(list(units), by, gradient)
         """Derivatives of the variables by parameters: `gradient[variable, parameter]`."""
         self.stopped: str | None = raw.stop
@@ -66,12 +80,45 @@ class Result(Mapping):
         return self._values
 
     def to_pandas(self):
-        """Returns the motion as a `pandas.DataFrame` with the times as index."""
-        import pandas
+        """Returns the motion as a `pandas.DataFrame` with the times as index, or with numbers for
+        poses without times."""
+        pandas = needed("pandas", tables.TO_PANDAS)
+        rows = tables.rows_index(self.t, self.timed)
+        return pandas.DataFrame(self._values, index=rows, columns=list(self.units))
 
-        return pandas.DataFrame(
-            self._values, index=pandas.Index(self.t, name="time"), columns=list(self.units)
-        )
+    def to_xarray(self):
+        """Returns the motion as an `xarray.Dataset` over `time`, or over `pose` for poses without
+        times. Each variable has its `units`."""
+        return tables.dataset(self.t, self.timed, self, self.units)
+
+    def plot(self, variables: str | Sequence[str] | None = None, over: str | None = None, axes=None):
+        """Draws variables over time, in a panel per unit, and returns the axes of Matplotlib.
+
+        `variables` are names, or those of bodies, markers, drivers or measures, by default all;
+        variables that are not named themselves are left out if they stay constant. `over` is the
+        variable on the x-axis; by default the time, or for poses without times the driver that
+        moves, if it is one. `axes` are axes to draw in, one per unit.
+        """
+        if len(self.t) < 2:
+            raise UsageError(f"plot: expected two rows or more; found {len(self.t)}")
+        known = list(self)
+        wanted = [variables] if isinstance(variables, str) else list(variables or known)
+        lines = {known[place]: self[known[place]] for place in places(known, wanted)}
+        named = wanted if variables else ()
+        moving = charts.changing(lines, self.units)
+        lines = {n: v for n, v in lines.items() if n in moving or n in named} or lines
+        return charts.panels(self._along(over), lines, self.units, axes)
+
+    def _along(self, over: str | None) -> tuple[str, NDArray]:
+        """Returns the label and the values of the x-axis of a chart."""
+        if over is not None and over != "time":
+            return charts.label(over, self.units.get(over, "")), self[over]
+        if self.timed or over == "time":
+            return charts.label("time", "s"), self.t
+        if self._moving is not None:
+            name, unit, values = self._moving
+            return charts.label(name, unit), values[: len(self.t)]
+        return "pose", np.arange(len(self.t))
 
     def to_html(self, forces: bool = False) -> str:
         """Returns a page on which the mechanism moves: one HTML file that needs no other.
@@ -97,8 +144,9 @@ class Result(Mapping):
         return f"<biela.Result: {len(self.t)} rows of {len(self.units)} variables{stopped}>"
 
 
-class Gradient:
-    """Derivatives of variables by parameters, each an array over time, in SI units."""
+class Gradient(Mapping):
+    """Derivatives of variables by parameters: a mapping from pairs of their names to arrays over
+    time, in SI units."""
 
     def __init__(self, variables: list[str], parameters: list[str], values: NDArray):
         self.variables = variables
@@ -118,6 +166,17 @@ class Gradient:
         place = self.parameters.index(parameter), self.variables.index(variable)
         return self._values[:, place[0], place[1]]
 
+    def __iter__(self) -> Iterator[tuple[str, str]]:
+        return ((variable, by) for variable in self.variables for by in self.parameters)
+
+    def __len__(self) -> int:
+        return len(self.variables) * len(self.parameters)
+
+    def __contains__(self, key: object) -> bool:
+        if not isinstance(key, tuple) or len(key) != 2:
+            return False
+        return key[0] in self.variables and key[1] in self.parameters
+
     def to_numpy(self) -> NDArray:
         """Returns all derivatives: rows by parameters by variables."""
         return self._values
@@ -132,13 +191,16 @@ class Sweep(Mapping):
     Each array has the shape of the swept parameters, then one axis over time.
     """
 
-    def __init__(self, t, units, parameters, shape, values, rows, reasons):
+    def __init__(self, t, timed, units, parameters, parameter_units, shape, values, rows, reasons):
         self.t: NDArray = t
-        """Times [s]."""
+        """Times [s]; those of the start for poses without times."""
+        self.timed: bool = timed
+        """Whether the rows have times of their own."""
         self.units: dict[str, str] = units
         """Units by the variables' names."""
         self.parameters: dict[str, NDArray] = parameters
         """Swept values by the parameters' names."""
+        self._parameter_units = parameter_units
         self.shape: tuple[int, ...] = shape
         """Shape of the variants."""
         self._values = values
@@ -173,6 +235,28 @@ class Sweep(Mapping):
 
     def __len__(self) -> int:
         return len(self.units)
+
+    def to_pandas(self):
+        """Returns all rows of all variants as a `pandas.DataFrame`.
+
+        The index has a level per swept parameter, and the times, or numbers for poses without times.
+        """
+        pandas = needed("pandas", tables.TO_PANDAS)
+        rows = tables.rows_index(self.t, self.timed)
+        values = np.moveaxis(self._values, 1, 2).reshape(-1, len(self.units))
+        index = tables.variants_index(self.parameters, rows)
+        return pandas.DataFrame(values, index=index, columns=list(self.units))
+
+    def to_xarray(self):
+        """Returns the motions as an `xarray.Dataset`, over the axes of the variants and `time`, or
+        `pose` for poses without times.
+
+        An axis along which one parameter varies alone has its name and its values; the others are
+        called `variant`, and their parameters are coordinates.
+        """
+        axes = tables.sweep_dimensions(self.parameters, self.shape)
+        coordinates = tables.sweep_coordinates(self.parameters, self._parameter_units, axes)
+        return tables.dataset(self.t, self.timed, self, self.units, axes, coordinates)
 
     def __repr__(self) -> str:
         whole = int(np.count_nonzero(self.ok))

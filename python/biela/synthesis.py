@@ -105,6 +105,10 @@ class Fit:
     """Costs of all starts where they were left, ascending."""
     evaluations: int
     """Number of times that the optimiser has asked for the residuals of all targets."""
+    success: bool
+    """Whether the last search came to an end by itself. The cost tells how well the targets are met."""
+    message: str
+    """Reason why the last search ended, in the words of SciPy where it is the one to end it."""
 
     def __repr__(self) -> str:
         return f"<biela.Fit: cost {self.cost:.3e} from {len(self.costs)} starts>"
@@ -391,4 +395,6 @@ class Problem:
             tuple(part if count else None for part, count in zip(timing, free)),
             np.array([attempt.cost for attempt in attempts]),
             self.spent + sum(attempt.evaluations for attempt in attempts),
+            best.success,
+            best.message,
         )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import UsageError
 from .mechanism import Drive, Mechanism, Parameters, _count, _given
+from .optional import needed
 from .results import Result, Sweep
 
 MOST_CORNERS = 12
@@ -67,8 +68,7 @@ class Tolerances:
 
         The band's half width is the worst case along the normal of the path. Needs Matplotlib.
         """
-        import matplotlib.pyplot as pyplot
-
+        pyplot = needed("matplotlib.pyplot", "plot")
         if len(self.result.t) < 2:
             raise UsageError("tolerances: a path needs two poses")
         axes = pyplot.gca() if axes is None else axes

@@ -101,3 +101,28 @@ def test_unknown_names_are_told(four_bar):
         gradient["rocker.phi", "bas"]
     with pytest.raises(biela.UsageError, match=r"gradient\[variable, parameter\]"):
         gradient["rocker.phi"]
+
+
+def test_a_gradient_is_a_mapping(four_bar):
+    result = four_bar.run(t=[0.0, 0.1], variables=["rocker.phi"], gradient=["base", "crank_length"])
+    gradient = result.gradient
+    assert list(gradient) == [("rocker.phi", "base"), ("rocker.phi", "crank_length")]
+    assert len(gradient) == len(gradient.keys()) == 2
+    assert ("rocker.phi", "base") in gradient and ("rocker.phi", "rocker_length") not in gradient
+    assert "rocker.phi" not in gradient
+    for (variable, parameter), values in gradient.items():
+        assert values is not None and (values == gradient[variable, parameter]).all()
+    assert gradient.get(("rocker.phi", "rocker_length")) is None
+    assert not four_bar.run(t=[0.0]).gradient
+    with pytest.raises(KeyError, match="^no parameter among `gradient` `bas`"):
+        gradient["rocker.phi", "bas"]
+
+
+def test_all_parameters_are_those_that_can_be_set(any_mechanism):
+    t = [0.0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", biela.MechanismWarning)
+        drive = small_motion(any_mechanism, np.array(t))
+        gradient = any_mechanism.run(t=t, drive=drive, gradient="all").gradient
+    free = [p.name for p in any_mechanism.parameters.values() if not p.derived]
+    assert gradient.parameters == free and np.isfinite(gradient.to_numpy()).all()

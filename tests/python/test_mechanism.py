@@ -36,9 +36,15 @@ def test_errors_of_a_file_are_diagnostics(tmp_path):
     assert biela.check(file).diagnostics == (problem,)
 
 
-def test_a_missing_file_is_told(tmp_path):
-    with pytest.raises(biela.FileError, match="cannot read"):
-        biela.load(tmp_path / "none.toml")
+@pytest.mark.parametrize("read", [biela.load, biela.check])
+def test_a_missing_file_is_told(tmp_path, read):
+    with pytest.raises(FileNotFoundError, match="cannot read `.*none.toml`: No such file") as raised:
+        read(tmp_path / "none.toml")
+    assert isinstance(raised.value, biela.FileError)
+    # A folder is there, and cannot be read.
+    with pytest.raises(biela.FileError, match="cannot read") as raised:
+        read(tmp_path)
+    assert not isinstance(raised.value, FileNotFoundError)
 
 
 def test_warnings_of_a_file_are_warnings():

@@ -220,12 +220,40 @@ def test_an_attempt_that_cannot_move_stays(method):
     attempt = Attempt(Point(), 1, method)
     attempt.improve(limits, 100)
     assert attempt.parameters == [1.0] and attempt.cost == 9.0
+    inside = method == "trf"
+    assert attempt.success != inside
+    assert (attempt.message == "no parameters near these reach all targets") == inside
+
+
+def test_a_fit_tells_why_it_ended(four_bar):
+    drive = {"crank_angle": [1.0, 1.4, 2.0]}
+    angles = four_bar.run(drive=drive, parameters={"base": 0.42})["rocker.phi"]
+    target = biela.Target({"rocker.phi": angles}, drive)
+    met = biela.fit(four_bar, target, ["base"])
+    assert met.success and met.message
+    near = biela.fit(four_bar, target, ["base"], stop_at=1e-6)
+    assert near.success and near.message == "the cost is not above `stop_at`" and near.cost > met.cost
+    # The derivatives by the base vanish at no base: the best one within the bounds is at a bound.
+    bound = biela.fit(four_bar, target, ["base"], {"base": (0.39, 0.41)})
+    assert bound.success and bound.cost > 1e-6 and bound.message
+
+
+def test_an_attempt_without_evaluations_left_is_no_success(four_bar):
+    drive = {"crank_angle": [1.0, 1.4, 2.0]}
+    angles = four_bar.run(drive=drive, parameters={"base": 0.42})["rocker.phi"]
+    problem = Problem(four_bar, biela.Target({"rocker.phi": angles}, drive), ["base"], {}, None)
+    (attempt,) = problem.attempts(1, 0, np.random.default_rng(0))
+    assert not attempt.success and attempt.message == "the search has not begun"
+    attempt.improve(problem.limits, 2)
+    assert not attempt.success and "maximum number of function evaluations" in attempt.message
+    attempt.improve(problem.limits, 100)
+    assert attempt.success and "condition is satisfied" in attempt.message
 
 
 def test_a_fit_without_scipy_names_the_package(four_bar, monkeypatch):
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     target = biela.Target({"rocker.phi": [2.2]}, drive={"crank_angle": [1.0]})
-    with pytest.raises(biela.UsageError, match="fit needs the package SciPy: pip install scipy"):
+    with pytest.raises(biela.UsageError, match="fit needs the package scipy: pip install scipy"):
         biela.fit(four_bar, target, ["base"])
 
 
