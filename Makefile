@@ -40,7 +40,7 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
 .PHONY: help demo test bench fuzz attack lint build module setup install uninstall refresh lock clean \
-    runtimes licences advisories wheel test-platforms test-install page test-page gallery
+    runtimes licences advisories wheel test-platforms test-install page test-page gallery docs
 .NOTPARALLEL:
 
 help: ## show this list
@@ -122,6 +122,9 @@ test-page: setup build page ## move mechanisms on pages in a headless browser (C
 gallery: build page ## write pages of all mechanisms, to be moved by hand, into target/gallery
 	@python3 scripts/gallery.py
 
+docs: ## make a site of the documentation, with search, in target/docs/site; after `make gallery` with its pages
+	@bash scripts/docs.sh
+
 test-platforms: setup build ## run FMUs under Wine and QEMU, after `make runtimes`; writes docs/platforms.md
 	@bash scripts/test_platforms.sh
 
@@ -174,7 +177,7 @@ refresh: setup build ## regenerate modelDescription/*.xml, the gallery and the p
 	target/release/biela run mechanisms/jansen_leg.toml --drive 'crank_angle = -pi*t' --stop 2 --step 0.04 --animate docs/jansen_leg.svg
 	cd tests/fmpy && ../../$(PYTHON) -m gallery --page
 
-lock: setup ## renew tests/fmpy/requirements.txt from requirements.in
+lock: setup ## renew each requirements.txt from the requirements.in beside it
 	@bash scripts/lock.sh
 
 clean: ## remove what was built; `.venv` and set-up stay

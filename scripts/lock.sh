@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Refreshes tests/fmpy/requirements.txt from requirements.in: newest versions, every hash,
-# for every system and Python from 3.10 on. Needs the network, and .venv.
+# Refreshes tests/fmpy/requirements.txt and scripts/site/requirements.txt, each from the
+# requirements.in beside it: newest versions, every hash, for every system and Python from 3.10 on.
+# Needs the network, and .venv.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -16,12 +17,14 @@ if ! has uv; then
     fi
 fi
 
-new=$LOCK.new
-trap 'rm -f "$new"' EXIT
-{
-    echo "# Locked from requirements.in for Python 3.10 and newer on every system; refresh it with: make lock"
-    "$uv" pip compile --quiet --no-config --upgrade --universal --python-version 3.10 \
-        --generate-hashes --no-emit-index-url --no-header tests/fmpy/requirements.in
-} >"$new"
-mv "$new" "$LOCK"
-say "wrote $LOCK"
+for lock in "$LOCK" scripts/site/requirements.txt; do
+    new=$lock.new
+    trap 'rm -f "$new"' EXIT
+    {
+        echo "# Locked from requirements.in for Python 3.10 and newer on every system; refresh it with: make lock"
+        "$uv" pip compile --quiet --no-config --upgrade --universal --python-version 3.10 \
+            --generate-hashes --no-emit-index-url --no-header "${lock%.txt}.in"
+    } >"$new"
+    mv "$new" "$lock"
+    say "wrote $lock"
+done

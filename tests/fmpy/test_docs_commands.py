@@ -168,6 +168,12 @@ def test_links_lead_somewhere(page):
             assert anchor in anchors(linked), f"{page_name(page)}: {target}"
 
 
+def test_the_index_of_the_documentation_names_every_page():
+    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"README.md"}
+    assert pages == set(re.findall(r"^\| \[[\w-]+\.md\]\(([\w-]+\.md)\)", index, re.MULTILINE))
+
+
 def test_the_inside_names_files_that_exist():
     page = ROOT / "docs" / "inside.md"
     named = re.findall(r"`([\w./*-]+/[\w./*-]+)`", page.read_text(encoding="utf-8"))
