@@ -5,14 +5,17 @@ from __future__ import annotations
 import html
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _biela, charts, tables
 from .errors import Diagnostic, UnknownNameError, UsageError
-from .optional import needed
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 
 def _unknown(name: Any, known: list[str], kind: str = "variable") -> UnknownNameError:
@@ -79,19 +82,20 @@ class Result(Mapping):
         """Returns all values: rows by columns, in the order of the names."""
         return self._values
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """Returns the motion as a `pandas.DataFrame` with the times as index, or with numbers for
         poses without times."""
-        pandas = needed("pandas", tables.TO_PANDAS)
         rows = tables.rows_index(self.t, self.timed)
-        return pandas.DataFrame(self._values, index=rows, columns=list(self.units))
+        return tables.frame(self._values, rows, self.units)
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """Returns the motion as an `xarray.Dataset` over `time`, or over `pose` for poses without
         times. Each variable has its `units`."""
         return tables.dataset(self.t, self.timed, self, self.units)
 
-    def plot(self, variables: str | Sequence[str] | None = None, over: str | None = None, axes=None):
+    def plot(
+        self, variables: str | Sequence[str] | None = None, over: str | None = None, axes=None
+    ) -> NDArray:
         """Draws variables over time, in a panel per unit, and returns the axes of Matplotlib.
 
         `variables` are names, or those of bodies, markers, drivers or measures, by default all;
@@ -236,18 +240,17 @@ class Sweep(Mapping):
     def __len__(self) -> int:
         return len(self.units)
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """Returns all rows of all variants as a `pandas.DataFrame`.
 
         The index has a level per swept parameter, and the times, or numbers for poses without times.
         """
-        pandas = needed("pandas", tables.TO_PANDAS)
         rows = tables.rows_index(self.t, self.timed)
         values = np.moveaxis(self._values, 1, 2).reshape(-1, len(self.units))
         index = tables.variants_index(self.parameters, rows)
-        return pandas.DataFrame(values, index=index, columns=list(self.units))
+        return tables.frame(values, index, self.units)
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """Returns the motions as an `xarray.Dataset`, over the axes of the variants and `time`, or
         `pose` for poses without times.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,11 @@ def variants_index(parameters: Mapping[str, NDArray], rows):
     levels.append(level)
     codes.append(np.tile(code, variants))
     return pandas.MultiIndex(levels=levels, codes=codes, names=[*parameters, rows.name])
+
+
+def frame(values: NDArray, index, names: Iterable[str]):
+    """Returns values as a table of pandas: rows by columns of these names."""
+    return needed("pandas", TO_PANDAS).DataFrame(values, index=index, columns=list(names))
 
 
 def dataset(
