@@ -1,5 +1,6 @@
 """Settings of Sphinx for `make docs`: the Markdown files of the project, where they are, as a site."""
 
+import posixpath
 import re
 from pathlib import Path
 
@@ -30,20 +31,16 @@ html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_show_sphinx = html_show_copyright = html_copy_source = False
 
-NAVIGATION = {
-    "Learn": ["tutorial", "concepts", "estimates", "cookbook", "/mechanisms/README", "/examples/README"],
-    "Work": ["commands", "python", "editors", "hosts", "troubleshooting", "other-tools"],
-    "Look up": ["file-format", "constraints", "fmu", "solver", "platforms"],
-    "Carry on": ["inside", "/tests/README", "/benches/README", "/CHANGELOG"],
-}
-
 
 def tables_of_contents() -> str:
-    """Returns the navigation, which the index of the documentation holds."""
+    """Returns the navigation: the tables in the index of the documentation, under their headings."""
     parts = ["```{toctree}\n:hidden:\n\ndocs/README\n```\n"]
-    for caption, pages in NAVIGATION.items():
-        paths = [page if page.startswith("/") else f"/docs/{page}" for page in pages]
-        parts.append("\n".join(["```{toctree}", ":hidden:", f":caption: {caption}", "", *paths, "```\n"]))
+    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    for section in index.split("\n## ")[1:]:
+        caption, _, rows = section.partition("\n")
+        paths = re.findall(r"^\| \[[^]]+\]\(([^)]+)\.md\)", rows, re.MULTILINE)
+        pages = [posixpath.normpath(f"/docs/{path}") for path in paths]
+        parts.append("\n".join(["```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```\n"]))
     return "\n" + "\n".join(parts)
 
 
