@@ -11,6 +11,7 @@ mod generated;
 mod assembly;
 mod cam;
 mod closed_form;
+mod coupling;
 mod forces;
 mod free;
 mod integrator;

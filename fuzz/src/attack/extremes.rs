@@ -72,7 +72,7 @@ fn with_measures(text: &str, seed: u64) -> String {
         let index = chance.between(0.0, of.len() as f64) as usize;
         mechanism.marker_path(biela::mechanism::MarkerId(of[index.min(of.len() - 1)].0))
     };
-    let mut text = format!("{text}[measures]\n");
+    let mut text = text.to_owned();
     for (name, kind) in [("m0", "x"), ("m1", "y"), ("m2", "angle")] {
         let (from, to) = (any(&resting), any(&moving));
         let _ = writeln!(

@@ -119,6 +119,7 @@ pub struct Text<'a> {
     bodies: Vec<String>,
     joints: Vec<String>,
     drivers: String,
+    measures: String,
     to: Vec<f64>,
     parameters: Vec<(String, f64)>,
 }
@@ -134,6 +135,7 @@ impl<'a> Text<'a> {
             bodies: Vec::new(),
             joints: Vec::new(),
             drivers: String::new(),
+            measures: String::new(),
             to: Vec::new(),
             parameters: Vec::new(),
         }
@@ -261,6 +263,24 @@ impl<'a> Text<'a> {
         ));
     }
 
+    /// Adds a coupling by an equation, in which names have their prefix, and a law that it calls.
+    pub fn couple(&mut self, name: &str, equation: &str, law: &str) {
+        let prefix = self.view.prefix;
+        self.joints.push(format!(
+            "{prefix}{name} = {{ type = 'coupling', equation = '{equation}'{law} }}\n"
+        ));
+    }
+
+    /// Adds a measure.
+    pub fn measure(&mut self, name: &str, coordinate: &str, [i, j]: [&str; 2]) {
+        let (i, j) = (self.marker(i), self.marker(j));
+        let prefix = self.view.prefix;
+        let _ = writeln!(
+            self.measures,
+            "{prefix}{name} = {{ coordinate = '{coordinate}', markers = ['{i}', '{j}'] }}"
+        );
+    }
+
     /// Adds a revolute.
     pub fn pin(&mut self, name: &str, [i, j]: [&str; 2]) {
         let markers = if self.view.reversed { [j, i] } else { [i, j] };
@@ -320,12 +340,12 @@ impl<'a> Text<'a> {
             "" => String::new(),
             parameters => format!("[parameters]\n{parameters}"),
         };
-        let (ground, drivers) = (self.ground, self.drivers);
+        let (ground, drivers, measures) = (self.ground, self.drivers, self.measures);
         let (bodies, joints) = (self.bodies.concat(), self.joints.concat());
         Case {
             text: format!(
                 "format = 1\nname = 'attack'\n{head}[ground.markers]\n{ground}{bodies}\
-                 [joints]\n{joints}[drivers]\n{drivers}"
+                 [joints]\n{joints}[drivers]\n{drivers}[measures]\n{measures}"
             ),
             drivers: self.to,
             parameters: self.parameters,

@@ -8,7 +8,7 @@
 use super::rank::{constraint_rows, jacobian_rows};
 use crate::kinematics::Origin;
 use crate::kinematics::assembly::estimate::estimate;
-use crate::kinematics::assembly::gaps::{gather, open_joints};
+use crate::kinematics::assembly::gaps::{CLOSED, gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::{Error, Fit, OpenJoint, OpenPose};
 use crate::kinematics::linear::Echelon;
@@ -33,9 +33,6 @@ const LARGEST: f64 = 0.03;
 const LEFT: f64 = 4.0;
 /// Largest remainder of such a row, whatever the gap.
 const MOST_LEFT: f64 = 0.2;
-/// Largest scaled difference between wheels as they are drawn and as all else holds them: rounding of
-/// turns.
-const AS_DRAWN: f64 = 1e-9;
 /// Ratio of a coefficient in a combination of rows to the remainder of the combination. Smaller
 /// coefficients are attributed to the gap.
 const ABOVE_REMAINDER: f64 = 3.0;
@@ -202,7 +199,7 @@ fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
             let here = equation.constraint.value(&at);
             at.set_pose(mechanism, &drawn);
             let missing = (equation.constraint.value(&at) - here) * equation.row_scale(&at);
-            (missing.abs() <= AS_DRAWN).then(|| Fit::Phase {
+            (missing.abs() <= CLOSED).then(|| Fit::Phase {
                 origin: origin.describe(mechanism),
             })
         }

@@ -1,6 +1,7 @@
 //! The kinds of generated mechanisms.
 
 mod cams;
+mod couplings;
 mod groups;
 mod linkages;
 mod machines;
@@ -17,7 +18,7 @@ use crate::mutation::Chance;
 pub type Draw = fn(&mut Chance, Text<'_>) -> Case;
 
 /// The kinds with their names.
-pub const KINDS: [(&str, Draw); 29] = [
+pub const KINDS: [(&str, Draw); 32] = [
     ("four_bar", linkages::four_bar),
     ("six_bar", linkages::six_bar),
     ("slider_crank", sliders::slider_crank),
@@ -36,6 +37,9 @@ pub const KINDS: [(&str, Draw); 29] = [
     ("rack_in_loop", wheels::rack_in_loop),
     ("rolling_wheel", wheels::rolling_wheel),
     ("wheel_on_coupler", wheels::wheel_on_coupler),
+    ("coupled_cranks", couplings::coupled_cranks),
+    ("differential", couplings::differential),
+    ("screw", couplings::screw),
     ("cam_slide", cams::cam_slide),
     ("cam_arm", cams::cam_arm),
     ("cam_in_loop", cams::cam_in_loop),
