@@ -44,6 +44,7 @@ JOINT_TYPES = [
     "rack_and_pinion",
     "rolling",
     "cam",
+    "coupling",
 ]
 
 WORDS = {
