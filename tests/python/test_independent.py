@@ -79,6 +79,44 @@ OTHER_JOINTS = """
 """
 """Mechanism with the joints and constraints that no shipped mechanism has."""
 
+OTHER_COUPLINGS = """
+    format = 1
+    name = "other_couplings"
+    parameters.base = { value = 0.2, unit = "m" }
+    parameters.offset = { value = 0.04, unit = "m" }
+    parameters.arm = { value = 0.15, unit = "m" }
+    parameters.tilt = { value = 0.3, unit = "rad" }
+    parameters.rise = { value = 0.7, unit = "rad" }
+    ground.markers = { A = [0, 0], B = ["base", 0], C = [0.1, 0.12] }
+    [bodies]
+    crank = { markers = { O = [0, 0] } }
+    wheel = { markers = { O = [0, 0, "tilt"] }, estimate = ["base", 0, 0] }
+    slide = { markers = { S = [0, 0.01] }, estimate = ["base", 0, 0] }
+    lever = { markers = { C = [0, 0], L = ["arm", 0.01] }, estimate = [0.1, 0.12, 1] }
+    [joints]
+    A = { type = "revolute", markers = ["ground.A", "crank.O"] }
+    B = { type = "revolute", markers = ["ground.B", "wheel.O"] }
+    C = { type = "revolute", markers = ["ground.C", "lever.C"] }
+    way = { type = "translational", markers = ["ground.A", "slide.S"] }
+    product = { type = "coupling", equation = "travel = base + offset*sin(turn)*cos(2*spin)" }
+    swing = { type = "coupling", equation = "far^2 = arm*(travel + offset*spin)" }
+    [joints.table]
+    type = "coupling"
+    equation = "spin = law(turn + tilt)/2 - max(0, sin(turn))^3"
+    [joints.table.law]
+    table = [[-3, 0], [1, 1], [2, -1], [4, 0]]
+    scale = [1, "rise"]
+    law = "modified_sine"
+    ends = "periodic"
+    [drivers]
+    turn = { coordinate = "angle", markers = ["ground.A", "crank.O"], start = 0.2 }
+    [measures]
+    travel = { coordinate = "x", markers = ["ground.A", "slide.S"] }
+    spin = { coordinate = "angle", markers = ["crank.O", "wheel.O"] }
+    far = { coordinate = "distance", markers = ["slide.S", "lever.L"] }
+"""
+"""Mechanism with couplings that are not linear: products of coordinates, a distance, a table."""
+
 
 def rate(name: str, order: int) -> str:
     """Returns the name of the velocity or acceleration of a position."""
@@ -166,8 +204,9 @@ def test_exceptions_are_of_shipped_mechanisms():
     assert set(COMPUTED) | set(NEXT_TO_CHANGE_POINTS) <= {path.stem for path in MECHANISMS}
 
 
-def test_motions_and_gradients_of_other_joints():
-    mechanism = biela.loads(OTHER_JOINTS)
+@pytest.mark.parametrize("text", [OTHER_JOINTS, OTHER_COUPLINGS])
+def test_motions_and_gradients_of_other_joints(text):
+    mechanism = biela.loads(text)
     check(mechanism, TIMES, lively(mechanism))
 
 

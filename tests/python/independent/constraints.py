@@ -10,7 +10,8 @@ from .frames import Frame, Vector, direction
 
 
 class Entry(NamedTuple):
-    """Joint, constraint, driver or measure with its markers where they stand."""
+    """Joint, constraint, driver or measure with its markers where they stand; a coupling has none,
+    and ground in their place."""
 
     keys: dict
     """Keys of the entry in the file."""
@@ -26,6 +27,8 @@ class Entry(NamedTuple):
     """Polar radius of a cam's contour."""
     contact: Any
     """Polar angle of the contact, an unknown of its own."""
+    formula: Callable[[str], Any]
+    """Evaluates an expression over parameters, coordinates by their names, and the own `law`."""
 
     def __getitem__(self, key):
         return self.number(self.keys[key])
@@ -114,6 +117,11 @@ def rolling(at: Entry):
     return rack_and_pinion(at) + [side(at) * height - at["radius"]]
 
 
+def coupling(at: Entry):
+    left, right = map(at.formula, at.keys["equation"].split("="))
+    return [left - right]
+
+
 def cam(at: Entry):
     return FOLLOWERS[at.keys["follower"]](at)
 
@@ -164,7 +172,7 @@ JOINTS = {
     function.__name__: function
     for function in (
         revolute, translational, slot, link, revolute_translational, weld,
-        gear, belt, rack_and_pinion, rolling, cam,
+        gear, belt, rack_and_pinion, rolling, coupling, cam,
     )
 }  # fmt: skip
 """Residuals of each type of joint."""

@@ -15,10 +15,23 @@ CONSTANTS = {
     "cm": number("0.01"),
     "inch": number("0.0254"),
 }
+
+
+def atan2(y, x):
+    """Returns the angle of the point (x, y), an analytic function of its coordinates."""
+    if abs(x.real) < abs(y.real):
+        return mp.sign(y.real) * mp.pi / 2 - mp.atan(x / y)
+    return mp.atan(y / x) + (mp.pi * (1 if y.real >= 0 else -1) if x.real < 0 else 0)
+
+
 ANALYTIC = "sin cos tan asin acos atan sinh cosh tanh exp sqrt ln log10".split()
 FUNCTIONS = {name: getattr(mp, name) for name in ANALYTIC} | {
+    "atan2": atan2,
     "hypot": lambda x, y: mp.sqrt(x * x + y * y),
     "abs": lambda x: x if x.real >= 0 else -x,
+    "sign": lambda x: mp.sign(x.real),
+    "floor": lambda x: mp.floor(x.real),
+    "ceil": lambda x: mp.ceil(x.real),
     "mod": lambda x, y: x - y * mp.floor((x / y).real),
     "max": lambda *values: max(values, key=lambda value: value.real),
     "min": lambda *values: min(values, key=lambda value: value.real),

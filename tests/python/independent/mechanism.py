@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from pathlib import Path
 
 try:
@@ -14,6 +15,12 @@ from .constraints import JOINTS, Entry, coordinate, held
 from .digits import mp, number
 from .expressions import Names, evaluate
 from .frames import GROUND, Frame, Vector, frame
+
+
+def coordinates(file: dict) -> dict:
+    """Returns the entries that are coordinates with names: of drivers, freedoms and measures."""
+    named = {**moving(file), **file.get("measures", {})}
+    return {name: entry for name, entry in named.items() if "coordinate" in entry}
 
 
 def moving(file: dict) -> dict:
@@ -38,6 +45,11 @@ class Mechanism:
             place: tables.profile(joint["profile"], self.names, folder)
             for place, joint in enumerate(self.joints)
             if joint["type"] == "cam"
+        }
+        self.laws = {
+            place: tables.motion(joint["law"], self.names, folder, "x")
+            for place, joint in enumerate(self.joints)
+            if joint["type"] == "coupling" and "law" in joint
         }
         self.motions = {
             name: tables.motion(driver["motion"], self.names, folder)
@@ -79,7 +91,7 @@ class Placed:
 
     def entry(self, keys: dict, place: int | None = None) -> Entry:
         """Returns an entry of the file in this pose; joints have a place among the joints."""
-        i, j = map(self.frame, keys["markers"])
+        i, j = map(self.frame, keys["markers"]) if "markers" in keys else (GROUND, GROUND)
         return Entry(
             keys,
             i,
@@ -89,7 +101,14 @@ class Placed:
             self.mechanism.number,
             self.mechanism.profiles.get(place),
             self.contacts.get(place),
+            lambda text: evaluate(text.strip(), self.names(place)),
         )
+
+    def names(self, place: int | None) -> ChainMap:
+        """Returns the names in the equation of a joint: coordinates, its law, and all others."""
+        file = self.mechanism.file
+        named = {name: coordinate(self.entry(keys)) for name, keys in coordinates(file).items()}
+        return ChainMap(named, {"law": self.mechanism.laws.get(place)}, self.mechanism.names)
 
     def residual(self, driven: dict) -> list:
         """Returns the residuals of all equations for these values of the drivers."""
@@ -112,7 +131,6 @@ class Placed:
         for marker in outputs.get("markers", []):
             point = self.frame(marker).point
             found |= {f"{marker}.x": point.x, f"{marker}.y": point.y}
-        for name, entry in {**moving(file), **file.get("measures", {})}.items():
-            if "coordinate" in entry:
-                found[f"{name}.position"] = coordinate(self.entry(entry))
+        for name, entry in coordinates(file).items():
+            found[f"{name}.position"] = coordinate(self.entry(entry))
         return found

@@ -88,10 +88,10 @@ def read_points(table: dict, names, folder):
     return [[evaluate(x, names) * factor for x, factor in zip(row, scale)] for row in rows]
 
 
-def motion(entry, names, folder):
-    """Returns a prescribed motion as a function of time [s]."""
+def motion(entry, names, folder, variable="t"):
+    """Returns a prescribed motion as a function of time [s], or the law of a coupling in `x`."""
     if isinstance(entry, str):
-        return names.function(entry, "t")
+        return names.function(entry, variable)
     if entry.get("ends") != "periodic":
         raise NotImplementedError(f"ends = {entry.get('ends')!r}")
     return repeated(read_points(entry, names, folder), entry.get("law", "spline"))
