@@ -110,7 +110,11 @@ def expected_forces(file):
             yield f"{name}.bias", effort
     reactions = file.get("outputs", {}).get("reactions")
     for name, table in file.get("joints", {}).items():
-        if reactions is None or name in reactions:
+        if reactions is not None and name not in reactions:
+            continue
+        if table["type"] == "coupling":
+            yield from expected_of_coupling(name, table, file)
+        else:
             for suffix in REACTIONS[table.get("follower", table["type"])].split():
                 yield f"{name}.{suffix}", "N.m" if suffix == "torque" else "N"
     for name, table in file.get("constraints", {}).items():
@@ -123,6 +127,18 @@ def expected_forces(file):
                 yield f"{name}.{suffix}", unit
     yield "energy.kinetic", "J"
     yield "energy.potential", "J"
+
+
+def expected_of_coupling(name, table, file):
+    """Names and units of its effort and of those along the coordinates in its equation."""
+    sections = ("drivers", "freedoms", "measures")
+    known = {name: entry for section in sections for name, entry in file.get(section, {}).items()}
+    named = dict.fromkeys(re.findall(r"[A-Za-z]\w*", table["equation"]))
+    units = [(other, *force_units(known[other]).values()) for other in named if other in known]
+    # One length makes both sides lengths.
+    yield f"{name}.effort", "N" if "N" in dict(units).values() else "N.m"
+    for other, unit in units:
+        yield f"{name}.{other}.effort", unit
 
 
 REACTIONS = {
