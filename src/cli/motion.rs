@@ -13,7 +13,7 @@ pub(super) struct Motion {
     pub(super) solver: Solver,
     pub(super) solution: Solution,
     /// Singular positions that are near or were passed, contacts that pull, drivers beyond their
-    /// limits: not told yet.
+    /// limits, ropes off their pulleys: not told yet.
     pub(super) notices: Vec<Message>,
     path: Path,
     signals: Signals,
@@ -22,6 +22,8 @@ pub(super) struct Motion {
     near_singular: bool,
     /// Whether each driver is beyond its limits.
     beyond: Vec<bool>,
+    /// Whether a rope has left each pulley.
+    off_pulleys: Vec<bool>,
 }
 
 impl Motion {
@@ -40,6 +42,7 @@ impl Motion {
         let mut motion = Self {
             solution: Solution::new(&solver),
             beyond: vec![false; start.drivers.len()],
+            off_pulleys: vec![false; solver.mechanism().pulleys()],
             solver,
             notices: Vec::new(),
             path,
@@ -47,6 +50,8 @@ impl Motion {
             free: None,
             near_singular: false,
         };
+        // Those at the start are told with the mechanism.
+        motion.solver.off_pulleys(&mut motion.off_pulleys).count();
         motion.watch_limits();
         motion.solve()?;
         Ok(motion)
@@ -206,7 +211,7 @@ impl Motion {
         self.watch_limits();
     }
 
-    /// Notes drivers that go beyond their limits.
+    /// Notes drivers that go beyond their limits, and ropes that leave their pulleys.
     fn watch_limits(&mut self) {
         let pose = self.solver.pose();
         let drivers = self.solver.mechanism().drivers.iter();
@@ -214,6 +219,9 @@ impl Motion {
             let excursion = driver.excursion(*value, pose.time, beyond);
             self.notices.extend(excursion.map(Message::Warning));
         }
+        let left = self.solver.off_pulleys(&mut self.off_pulleys);
+        let left = left.map(|left| Message::Warning(left.to_string()));
+        self.notices.extend(left);
     }
 
     /// Says what stops the mechanism, when, and at which values of the moving drivers.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Rotation2;
 
 use super::anchor::{Anchor, Frame};
-use super::outline::{Point, across, angle, direction, unit};
+use super::outline::{Point, across, angle, direction, tangent, unit};
 use crate::mechanism::BodyId;
 
 /// The frame that a mark or a label moves with: it keeps its place in this frame.
@@ -42,6 +42,9 @@ pub(super) struct Line {
     pub(super) offset: f64,
     /// A shorter line is drawn this long to both sides of the second point, in units of the sheet.
     pub(super) shortest: f64,
+    /// Radii of circles round the points to which the line is a tangent \[m\], positive for a circle
+    /// on its left; zero for a point.
+    pub(super) radii: [f64; 2],
 }
 
 /// A frame on the sheet, where y points down and angles count clockwise.
@@ -60,14 +63,8 @@ impl Attachment {
 
     /// Returns the frame at a point of a line between two points, towards the second.
     pub(super) fn between(points: [Anchor; 2]) -> Self {
-        let line = Line {
-            points,
-            axis: None,
-            offset: 0.0,
-            shortest: 0.0,
-        };
         Self::Line {
-            line,
+            line: Line::between(points),
             end: End::First,
         }
     }
@@ -105,9 +102,21 @@ impl Attachment {
 }
 
 impl Line {
+    /// Returns the line from one point to another.
+    pub(super) fn between(points: [Anchor; 2]) -> Self {
+        Self {
+            points,
+            axis: None,
+            offset: 0.0,
+            shortest: 0.0,
+            radii: [0.0; 2],
+        }
+    }
+
     /// Returns the points and the unit vector of the direction, all on the sheet.
     pub(super) fn on_sheet(&self, q: &[f64], scale: f64) -> ([Point; 2], Point) {
-        let points = self.points.map(|p| on_sheet(p.placed(q).point, scale));
+        let points = tangent(self.points.map(|p| p.placed(q).point), self.radii);
+        let points = points.map(|point| on_sheet(point, scale));
         let along = self.axis.map_or_else(
             || unit(points[1] - points[0]),
             |axis| direction(-axis.placed(q).angle),

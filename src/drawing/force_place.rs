@@ -3,11 +3,12 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::anchor::Anchor;
-use super::outline::{across, direction};
+use super::outline::{across, direction, tangent, unit};
 use super::symbol::{ForceArrow, ForceKind, Symbol, TorqueArrow};
 use crate::kinematics::{ForceQuantity, Forces, Origin, Solution, Solver};
 use crate::mechanism::{
-    Coordinate, CoordinateKind, DriverId, Indeterminate, Load, Mechanism, rounded,
+    Coordinate, CoordinateKind, DriverId, Indeterminate, Joint, JointKind, Load, MarkerId,
+    Mechanism, Rope, rounded,
 };
 
 /// A force or torque that a picture shows.
@@ -25,6 +26,9 @@ pub struct ForcePlace {
 enum Size {
     /// Reaction of a joint.
     Reaction(usize),
+    /// Pull of the last leg of a rope, by its index, with a number of parts, towards a point or a
+    /// pulley of this radius.
+    Pull(usize, f64, Anchor, f64),
     /// A quantity along a coordinate.
     Along(ForceQuantity, Way),
     /// A force by its index, with components along the axes of an anchor.
@@ -62,10 +66,8 @@ impl ForcePlace {
                 && indeterminate.contains(&Origin::Joint(joint))
         };
         let joints = mechanism.outputs.joints.iter().copied();
-        let reactions = joints.filter(|joint| !is_omitted(*joint)).map(|joint| {
-            let at = anchor(mechanism.joints[joint].to);
-            (ForceKind::Reaction, (at, Size::Reaction(joint)))
-        });
+        let reactions = joints.filter(|joint| !is_omitted(*joint));
+        let reactions = reactions.map(|joint| Self::reaction(mechanism, parameters, joint));
         let drivers = mechanism.drivers.iter().enumerate();
         let efforts = drivers.map(|(index, driver)| {
             let effort = ForceQuantity::Effort(DriverId(index));
@@ -83,9 +85,24 @@ impl ForcePlace {
             };
             (ForceKind::Load, load)
         });
-        let all = reactions.chain(efforts).chain(loads);
         let place = |(kind, (at, size))| Self { kind, at, size };
-        all.map(place).collect()
+        reactions.chain(efforts.chain(loads).map(place)).collect()
+    }
+
+    /// Returns the force that a joint exerts on the body of its second marker; of a rope the pull of
+    /// its last leg.
+    #[must_use]
+    pub fn reaction(mechanism: &Mechanism, parameters: &[f64], joint: usize) -> Self {
+        let anchor = |marker| Anchor::of_marker(mechanism, parameters, marker);
+        let Joint { kind, to, .. } = &mechanism.joints[joint];
+        Self {
+            kind: ForceKind::Reaction,
+            at: anchor(*to),
+            size: match kind {
+                JointKind::Rope(rope) => pull(joint, rope, parameters, anchor),
+                _ => Size::Reaction(joint),
+            },
+        }
     }
 
     /// Returns [all](Self::all) forces of a solver's mechanism; none unless they are sought.
@@ -115,6 +132,13 @@ impl ForcePlace {
             Size::Reaction(joint) => {
                 [0, 1, 2].map(|component| forces.value(ForceQuantity::Reaction(*joint, component)))
             }
+            Size::Pull(joint, parts, from, radius) => {
+                let tension = forces.value(ForceQuantity::Reaction(*joint, 0));
+                let ends = [from.placed(q).point, self.at.placed(q).point];
+                let [touched, end] = tangent(ends, [*radius, 0.0]);
+                let [x, y]: [f64; 2] = (parts * tension * unit(touched - end)).into();
+                [x, y, 0.0]
+            }
             Size::Along(quantity, way) => {
                 let size = forces.value(*quantity);
                 let way = match way {
@@ -133,6 +157,20 @@ impl ForcePlace {
             }
         }
     }
+}
+
+/// Returns the pull of a rope's last leg.
+fn pull(
+    joint: usize,
+    rope: &Rope,
+    parameters: &[f64],
+    anchor: impl Fn(MarkerId) -> Anchor,
+) -> Size {
+    let before = &rope.points[rope.points.len() - 2];
+    let pulley = before.pulley.as_ref();
+    let radius = pulley.map_or(0.0, |p| p.side.sign() * p.radius.value(parameters));
+    let parts = rope.parts[rope.parts.len() - 1].value(parameters);
+    Size::Pull(joint, parts, anchor(before.marker), radius)
 }
 
 /// Returns arrows for forces with their values at one pose, as long as their parts of the largest

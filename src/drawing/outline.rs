@@ -216,6 +216,23 @@ pub(super) fn unit(v: Point) -> Point {
     v.try_normalize(1e-12).unwrap_or_else(Point::x)
 }
 
+/// Returns the ends of a common tangent of circles about two points, whose radii are positive for a
+/// circle on the left of the way from the first to the second. Of circles that overlap it returns the
+/// centres.
+pub(super) fn tangent(centers: [Point; 2], radii: [f64; 2]) -> [Point; 2] {
+    let (d, offset) = (centers[1] - centers[0], radii[1] - radii[0]);
+    let square = d.norm_squared();
+    let length = (square - offset * offset).max(0.0).sqrt();
+    if length == 0.0 {
+        return centers;
+    }
+    let normal = across((length * d - offset * across(d)) / square);
+    [
+        centers[0] - radii[0] * normal,
+        centers[1] - radii[1] * normal,
+    ]
+}
+
 /// Returns whether a point lies inside closed lines: a ray from it meets them an odd number of
 /// times.
 pub(super) fn contains(pieces: impl Iterator<Item = [Point; 2]>, p: Point) -> bool {

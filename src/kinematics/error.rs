@@ -346,7 +346,7 @@ pub struct OpenPose {
 pub enum Fit {
     /// A length.
     Length {
-        /// The link or the body that has the length: kind and name.
+        /// The link, the rope or the body that has the length: kind and name.
         origin: String,
         /// The markers of the body between which it is measured; `None` for a link.
         between: Option<[String; 2]>,

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::analysis::{
-    self, Direction, GeometryWarning, InstantCentre, Modes, Range, RangeSettings, Sensitivity,
+    self, Direction, GeometryWarning, InstantCentre, Modes, OffPulley, Range, RangeSettings,
+    Sensitivity,
 };
 use super::assembly::estimate::{Move, estimate, moves};
 use super::constraint::Constraint;
@@ -483,6 +484,12 @@ impl Solver {
     #[must_use]
     pub fn effort_rounding(&self, rates: &Rates, driver: DriverId, forces: &Forces) -> f64 {
         forces.effort_rounding(&self.state, rates, driver)
+    }
+
+    /// Returns the pulleys that ropes begin to leave at the present pose, and sets in `off`, one entry
+    /// per [pulley](Mechanism::pulleys), which ones they have left.
+    pub fn off_pulleys<'a>(&'a self, off: &'a mut [bool]) -> impl Iterator<Item = OffPulley<'a>> {
+        analysis::off_pulleys(&self.compiled.system, &self.state, off)
     }
 
     /// Returns the joints that can only push and begin to pull at the present pose, and sets in

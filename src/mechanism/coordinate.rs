@@ -57,14 +57,16 @@ impl Joint {
 
     /// Returns its markers, each as often as it occurs.
     pub fn markers(&self) -> impl Iterator<Item = MarkerId> {
-        let coupled = match &self.kind {
-            JointKind::Coupling(equation) => equation.coordinates.as_slice(),
-            _ => &[],
+        let (coupled, over): (&[_], &[_]) = match &self.kind {
+            JointKind::Coupling(equation) => (&equation.coordinates, &[]),
+            JointKind::Rope(rope) => (&[], &rope.points),
+            _ => (&[], &[]),
         };
         let coupled = coupled
             .iter()
             .flat_map(|(_, coordinate)| coordinate.markers());
-        [self.from, self.to].into_iter().chain(coupled)
+        let over = over.iter().map(|point| point.marker);
+        [self.from, self.to].into_iter().chain(coupled).chain(over)
     }
 
     /// Returns the coordinate that tells where the joint is on its way, if there is one.

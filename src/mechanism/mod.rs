@@ -7,6 +7,7 @@
 //! | `read` | from the document to the [`Mechanism`], or to all its problems |
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
+//! | `rope` | [`Rope`]: points and pulleys that a rope runs over |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
 //! | `coupling` | [`CoordinateEquation`]: an equation between coordinates |
@@ -36,6 +37,7 @@ mod parameter;
 mod profile;
 mod reaction;
 mod read;
+mod rope;
 mod setting;
 mod signal;
 mod source;
@@ -68,6 +70,8 @@ pub use profile::{
     ContourPoint, MovingProfile, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
 };
 pub use reaction::{ForceQuantity, NamedForce, Reported};
+pub(crate) use rope::MOST_BODIES;
+pub use rope::{Pulley, PulleySide, Rope, RopePoint};
 pub use setting::{Extrapolation, RateSource};
 pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};
@@ -259,6 +263,8 @@ pub enum JointKind {
         /// Contour of the cam.
         profile: Profile,
     },
+    /// A rope from marker i to marker j over the points between them.
+    Rope(Rope),
 }
 
 /// Constant of a relation between wheels, or of an equation between coordinates.

@@ -61,6 +61,8 @@ pub enum Reported {
     Torque,
     /// The effort of an equation between coordinates, in place of the torque.
     Effort,
+    /// The tension of a rope, in place of a force along x.
+    Tension,
 }
 
 impl Reported {
@@ -86,6 +88,7 @@ impl Reported {
             } => Self::ForceAndTorque,
             JointKind::Gear { .. } | JointKind::Belt { .. } => Self::Torque,
             JointKind::Coupling(_) => Self::Effort,
+            JointKind::Rope(_) => Self::Tension,
         }
     }
 
@@ -96,6 +99,7 @@ impl Reported {
             Self::Force => component < 2,
             Self::ForceAndTorque => true,
             Self::Torque | Self::Effort => component == 2,
+            Self::Tension => component == 0,
         }
     }
 }
@@ -182,6 +186,12 @@ impl List {
             let body = body.map_or("ground", |body| &mechanism.bodies[body.index()].name);
             if let JointKind::Coupling(equation) = &joint.kind {
                 self.add_efforts(index, joint, equation);
+                continue;
+            }
+            if reported == Reported::Tension {
+                let tension = format!("tension of rope `{}`", joint.name);
+                let quantity = ForceQuantity::Reaction(index, 0);
+                self.add(&joint.name, "tension", tension, quantity, Unit::NEWTON);
                 continue;
             }
             for (component, suffix) in Load::COMPONENTS.into_iter().enumerate() {

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::session::Session;
+use crate::drawing::ForcePlace;
 use crate::kinematics::Rates;
 use crate::mechanism::DriverId;
 
@@ -66,12 +67,12 @@ impl Session {
         out.extend_from_slice(&pose.parameters);
         out.extend((0..self.variables()).map(|index| self.variable(index)));
         if let Some(forces) = self.solution.forces() {
-            use crate::kinematics::ForceQuantity::Reaction;
             let none = Rates::new(pose.q.len());
             for &joint in &self.mechanism().outputs.joints {
                 let at = self.solver.marker(self.mechanism().joints[joint].to, &none);
                 out.extend(self.picture.place(at.map(|jet| jet.value)));
-                let force = [0, 1].map(|component| forces.value(Reaction(joint, component)));
+                let place = ForcePlace::reaction(self.mechanism(), &pose.parameters, joint);
+                let force = place.value(forces, &pose.q);
                 let known = |value: f64| if self.has_rates { value } else { f64::NAN };
                 out.extend([known(force[0]), -known(force[1])]);
             }

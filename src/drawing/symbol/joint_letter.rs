@@ -30,15 +30,15 @@ const SHORT: usize = 3;
 /// interest has.
 pub(super) fn places(composer: &Composer) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
-    let anchors = |ends: [MarkerId; 2]| ends.map(|marker| composer.anchor(marker));
+    let anchor = |marker: MarkerId| composer.anchor(marker);
     let joints = composer.mechanism.joints.iter().flat_map(|joint| {
-        let points = points_of(&joint.kind, anchors([joint.from, joint.to]));
+        let points = points_of(joint, anchor);
         points.into_iter().map(|points| (&joint.name, points))
     });
     // A cylinder holds its ends as a link does.
     let cylinders = composer.mechanism.drivers.iter().flat_map(|driver| {
         let Coordinate { kind, from, to, .. } = driver.coordinate;
-        let ends = (kind == CoordinateKind::Distance).then(|| anchors([from, to]));
+        let ends = (kind == CoordinateKind::Distance).then(|| [from, to].map(anchor));
         let points = ends.into_iter().flatten().map(|end| vec![end]);
         points.map(|points| (&driver.name, points))
     });
@@ -107,13 +107,18 @@ pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> 
 }
 
 /// Returns the places of a joint, each as the points that are there on bodies whatever the pose.
-fn points_of(kind: &JointKind, [from, to]: [Anchor; 2]) -> Vec<Vec<Anchor>> {
-    match kind {
+fn points_of(joint: &Joint, anchor: impl Fn(MarkerId) -> Anchor) -> Vec<Vec<Anchor>> {
+    let [from, to] = [joint.from, joint.to].map(&anchor);
+    match &joint.kind {
         JointKind::Revolute | JointKind::Weld => vec![vec![from, to]],
         JointKind::Translational | JointKind::Slot | JointKind::RevoluteTranslational { .. } => {
             vec![vec![to]]
         }
         JointKind::Link { .. } => vec![vec![from], vec![to]],
+        JointKind::Rope(rope) => {
+            let points = rope.points.iter();
+            points.map(|point| vec![anchor(point.marker)]).collect()
+        }
         // The joints of their bodies have letters.
         JointKind::Gear { .. }
         | JointKind::Belt { .. }

@@ -61,6 +61,7 @@ impl Shape for LengthDriver {
             axis: self.axis,
             offset: 0.0,
             shortest: SHORT,
+            radii: [0.0; 2],
         };
         let ([from, to], along) = line.on_sheet(pen.q, pen.scale);
         let aside = pen.away(across(along), 0.5 * (from + to));

@@ -91,6 +91,7 @@ impl Shape for Spring {
                 axis: self.axis,
                 offset: if both { offset } else { 0.0 },
                 shortest: SHORT,
+                radii: [0.0; 2],
             };
             pen.attach(Attachment::Line {
                 line,
@@ -113,6 +114,7 @@ impl Shape for Spring {
                 axis: self.axis,
                 offset: 0.0,
                 shortest: SHORT,
+                radii: [0.0; 2],
             };
             cylinder::draw(pen, Layer::Joint, line, self.barrel, Colour::INK);
         }

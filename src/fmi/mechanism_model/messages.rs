@@ -167,7 +167,7 @@ impl MechanismModel {
         self.log_effort(log);
     }
 
-    /// Reports excursions of drivers beyond their limits at `time`.
+    /// Reports excursions of drivers beyond their limits at `time`, and ropes that leave their pulleys.
     pub(super) fn report_excursions(&mut self, time: f64, log: &Logger) {
         let values = &self.solver.pose().drivers;
         let monitors = self.course.monitors.iter_mut().zip(values);
@@ -175,6 +175,12 @@ impl MechanismModel {
             if let Some(message) = driver.excursion(*value, time, &mut monitor.beyond) {
                 log.advise(Advice::Limits, || message);
             }
+        }
+        if !log.wants(Category::Warning) {
+            return;
+        }
+        for left in self.solver.off_pulleys(&mut self.course.off_pulleys) {
+            log.remark(|| left.to_string());
         }
     }
 

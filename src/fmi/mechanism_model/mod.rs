@@ -134,6 +134,8 @@ struct Course {
     free: Option<FreeState>,
     /// Whether each contact pulled at the last communication point.
     lifted: Vec<bool>,
+    /// Whether a rope has left each pulley.
+    off_pulleys: Vec<bool>,
     /// Observations per driver.
     monitors: Vec<Monitor>,
     /// Whether the host has been warned of the singular position nearby.
@@ -174,6 +176,7 @@ impl Course {
             force_inputs: vec![ForceInput::default(); solution.loads.len()],
             free,
             lifted: vec![false; contacts],
+            off_pulleys: vec![false; mechanism.pulleys()],
             monitors: vec![Monitor::default(); drivers],
             near_singular: false,
             path_progress: Progress::default(),

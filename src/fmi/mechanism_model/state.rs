@@ -158,6 +158,7 @@ impl MechanismState {
             force_inputs,
             free,
             lifted,
+            off_pulleys,
             monitors,
             near_singular,
             path_progress,
@@ -188,7 +189,7 @@ impl MechanismState {
         if let Some(free) = free {
             visit_free(free, codec)?;
         }
-        codec.each(lifted, Codec::flag)?;
+        codec.each(lifted.iter_mut().chain(off_pulleys), Codec::flag)?;
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
             codec.real(&mut rates.value)?;

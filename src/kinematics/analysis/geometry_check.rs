@@ -1,4 +1,4 @@
-//! Checks the geometry of joints: the distances of wheels, and the hollows of cams.
+//! Checks the geometry of joints: the distances of wheels, the hollows of cams, the arcs of ropes.
 //!
 //! The equations of these joints hold all the same; a warning tells that the drawing does not fit
 //! them.
@@ -8,6 +8,7 @@ use std::fmt;
 
 use nalgebra::Vector2;
 
+use super::off_pulley::arcs;
 use crate::kinematics::constraint::Contour;
 use crate::kinematics::constraint::configuration::{Configuration, ProfileId, perp};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
@@ -66,6 +67,13 @@ pub enum GeometryWarningKind {
         /// First and last polar angle of each part that is not convex \[rad\].
         ranges: Vec<[f64; 2]>,
     },
+    /// A rope does not touch its pulley.
+    OffPulley {
+        /// Marker at the pulley's centre, with its body.
+        pulley: String,
+        /// Angle of the rope's arc on it, below zero \[rad\].
+        angle: f64,
+    },
 }
 
 impl fmt::Display for GeometryWarning {
@@ -113,6 +121,12 @@ impl fmt::Display for GeometryWarning {
                 "a flat face cannot follow the contour where it is hollow: {}",
                 degrees(ranges)
             ),
+            GeometryWarningKind::OffPulley { pulley, angle } => write!(
+                f,
+                "the rope does not touch its pulley at `{pulley}`: the arc on it is {:.1} deg; is \
+                 its side right?",
+                angle.to_degrees()
+            ),
         }
     }
 }
@@ -140,10 +154,11 @@ fn degrees(ranges: &[[f64; 2]]) -> String {
 const PARTS: u32 = 64;
 /// Least width of a part \[rad\], 0.02°.
 const SMALLEST_PART: f64 = TAU / 16_384.0;
-/// Relative error of a distance that fits.
+/// Relative error of a distance that fits, and angle of an arc that is rounding \[rad\].
 const TOLERANCE: f64 = 1e-6;
 
-/// Returns the joints that do not fit their own numbers at the pose, in the order of declaration.
+/// Returns the joints that do not fit their own numbers at the pose, in the order of declaration, ropes
+/// last.
 pub(in crate::kinematics) fn geometry_warnings(
     compiled: &CompiledMechanism,
     state: &State,
@@ -154,32 +169,43 @@ pub(in crate::kinematics) fn geometry_warnings(
     };
     let mut profiles = (0..).map(ProfileId);
     let joints = compiled.system.mechanism().joints.iter();
-    let warnings = joints.filter_map(|joint| {
-        let centres = [joint.from, joint.to];
-        let kind = match &joint.kind {
-            JointKind::Gear {
-                sizes: WheelSizes::Radii(radii),
-                internal,
-                ..
-            } => check.gear(centres, check.numbers(radii), *internal),
-            JointKind::Belt {
-                sizes: WheelSizes::Radii(radii),
-                crossed,
-                ..
-            } => check.belt(centres, check.numbers(radii), *crossed),
-            JointKind::RackAndPinion { radius, side, .. } => {
-                check.rack(centres, radius.value(check.parameters), *side)
-            }
-            JointKind::Cam { follower, .. } => {
-                let profile = profiles.next().map(|id| state.at.profile(id));
-                profile.and_then(|profile| check.cam(profile, follower))
-            }
-            _ => None,
-        };
-        let joint = joint.name.clone();
-        kind.map(|kind| GeometryWarning { joint, kind })
-    });
-    warnings.collect()
+    let mut warnings: Vec<_> = joints
+        .filter_map(|joint| {
+            let centres = [joint.from, joint.to];
+            let kind = match &joint.kind {
+                JointKind::Gear {
+                    sizes: WheelSizes::Radii(radii),
+                    internal,
+                    ..
+                } => check.gear(centres, check.numbers(radii), *internal),
+                JointKind::Belt {
+                    sizes: WheelSizes::Radii(radii),
+                    crossed,
+                    ..
+                } => check.belt(centres, check.numbers(radii), *crossed),
+                JointKind::RackAndPinion { radius, side, .. } => {
+                    check.rack(centres, radius.value(check.parameters), *side)
+                }
+                JointKind::Cam { follower, .. } => {
+                    let profile = profiles.next().map(|id| state.at.profile(id));
+                    profile.and_then(|profile| check.cam(profile, follower))
+                }
+                _ => None,
+            };
+            let joint = joint.name.clone();
+            kind.map(|kind| GeometryWarning { joint, kind })
+        })
+        .collect();
+    let mechanism = compiled.system.mechanism();
+    let off = arcs(&compiled.system, state).filter(|(.., angle)| *angle < -TOLERANCE);
+    warnings.extend(off.map(|(joint, marker, angle)| GeometryWarning {
+        joint: mechanism.joints[joint].name.clone(),
+        kind: GeometryWarningKind::OffPulley {
+            pulley: mechanism.marker_path(marker),
+            angle,
+        },
+    }));
+    warnings
 }
 
 /// A check of joints at a pose.

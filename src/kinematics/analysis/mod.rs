@@ -9,10 +9,12 @@
 //! | [`instant_centre`](mod@instant_centre) | points of bodies that are at rest for an instant |
 //! | [`play`] | the play that constraints need that contradict each other |
 //! | [`geometry_check`] | distances of wheels, hollows of cams |
+//! | `off_pulley` | ropes that leave their pulleys |
 
 mod geometry_check;
 mod instant_centre;
 mod modes;
+mod off_pulley;
 mod play;
 mod range;
 mod sensitivity;
@@ -24,6 +26,8 @@ pub use instant_centre::InstantCentre;
 pub(super) use instant_centre::instant_centre;
 pub use modes::{Mode, Modes};
 pub(super) use modes::{modes, poses};
+pub use off_pulley::OffPulley;
+pub(super) use off_pulley::off_pulleys;
 pub use play::Play;
 pub(super) use range::range;
 pub use range::{ChangePoint, End, Extreme, Range, RangeSettings, Sample};

@@ -3,15 +3,16 @@
 use nalgebra::Vector2;
 
 use super::configuration::{MarkerPose, perp};
-use crate::mechanism::{BodyId, MOST_COUPLED};
+use crate::mechanism::{BodyId, MOST_BODIES};
 
-/// A row of the Jacobian: its entries for at most [`MOST_COUPLED`] bodies and one joint unknown.
+/// A row of the Jacobian: its entries for some bodies and one joint unknown.
 ///
-/// It does not allocate.
+/// It does not allocate. Most relations have at most three markers, hence three bodies; a rope or a
+/// coupling may have [eight](MOST_BODIES).
 #[derive(Clone, Debug, Default)]
 pub struct Gradient {
     len: usize,
-    parts: [(usize, [f64; 3]); MOST_COUPLED],
+    parts: [(usize, [f64; 3]); MOST_BODIES],
     /// Index in q of a joint unknown, and its entry.
     joint_unknown: Option<(usize, f64)>,
 }

@@ -28,6 +28,7 @@ mod point;
 mod projection;
 mod rack_and_pinion;
 mod region;
+mod rope;
 mod wheel_pair;
 
 use std::any::Any;
@@ -46,6 +47,7 @@ pub use point::{point_acceleration, point_velocity};
 pub use projection::Projection;
 pub use rack_and_pinion::RackAndPinion;
 pub use region::Region;
+pub use rope::{RopeLength, Station};
 pub use wheel_pair::WheelPair;
 
 use crate::mechanism::{Coordinate, CoordinateKind};

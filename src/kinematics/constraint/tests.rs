@@ -140,6 +140,51 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
             samples.push(Box::new(coupling(equation)));
         }
     }
+    // Ropes over points, round pulleys on both sides, and along one body. The way turns back on
+    // pulleys, far from the angles at which arcs begin and end.
+    let (left, right) = (
+        Some((CoefficientId(0), 1.0)),
+        Some((CoefficientId(0), -1.0)),
+    );
+    for way in [
+        &[("a.A", None), ("b.B", None)][..],
+        &[
+            ("ground.G", None),
+            ("a.A", None),
+            ("b.B", None),
+            ("ground.H", None),
+        ],
+        &[("a.A", None), ("a.O", None), ("c.C", None)],
+        &[
+            ("ground.G", None),
+            ("c.C", left),
+            ("a.A", None),
+            ("b.B", None),
+        ],
+        &[
+            ("ground.G", None),
+            ("c.C", right),
+            ("a.A", left),
+            ("b.B", None),
+        ],
+        &[
+            ("a.O", None),
+            ("a.A", left),
+            ("c.C", left),
+            ("ground.H", None),
+        ],
+    ] {
+        let station = |&(marker, pulley)| Station {
+            marker: id(marker),
+            pulley,
+        };
+        let parts = (1..way.len()).map(|k| match way[k].1.or(way[k - 1].1) {
+            Some(_) => CoefficientId(1),
+            None => CoefficientId(k % 2),
+        });
+        let stations = way.iter().map(station).collect();
+        samples.push(Box::new(RopeLength::new(stations, parts.collect())));
+    }
     samples
 }
 

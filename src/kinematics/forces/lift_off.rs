@@ -1,40 +1,50 @@
-//! Contacts that would lift off.
+//! Contacts that would lift off, and ropes that would be slack.
 
 use std::fmt;
 
 use super::solve::Forces;
+use super::wrench::ContactKind;
 use crate::kinematics::state::State;
 use crate::mechanism::{show_time, shown};
 
 /// A part of the largest reaction below which a pulling force is rounding.
 const PULLS: f64 = 1e-9;
 
-/// A joint that can only push and begins to pull.
+/// A joint that can only push and begins to pull, or a rope that begins to push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiftOff<'a> {
     /// Time \[s\].
     pub time: f64,
     /// Name of the joint.
     pub joint: &'a str,
-    /// Force by which its parts would have to pull each other \[N\].
+    /// Force by which its parts would have to pull each other, or the rope to push \[N\].
     pub pull: f64,
+    /// Whether it is a rope.
+    pub is_rope: bool,
 }
 
 impl fmt::Display for LiftOff<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { time, joint, pull } = self;
-        write!(
-            out,
-            "t = {} s: joint `{joint}` would lift off: its parts would have to pull each other \
-             with {} N; the mechanism keeps them together",
-            show_time(*time),
-            shown(*pull)
-        )
+        let (time, joint, pull) = (show_time(self.time), self.joint, shown(self.pull));
+        if self.is_rope {
+            write!(
+                out,
+                "t = {time} s: rope `{joint}` would be slack: it would have to push with {pull} N; \
+                 the mechanism keeps its length"
+            )
+        } else {
+            write!(
+                out,
+                "t = {time} s: joint `{joint}` would lift off: its parts would have to pull each \
+                 other with {pull} N; the mechanism keeps them together"
+            )
+        }
     }
 }
 
 impl Forces {
-    /// Returns the contacts that begin to pull, and sets in `lifted` which contacts pull.
+    /// Returns the contacts that begin to pull and the ropes that begin to push, and sets in `lifted`
+    /// which contacts pull.
     pub(in crate::kinematics) fn lift_offs<'a>(
         &'a self,
         state: &'a State,
@@ -51,6 +61,7 @@ impl Forces {
                 time: state.pose.time,
                 joint: &self.mechanism.joints[contact.joint].name,
                 pull: -force,
+                is_rope: contact.kind == ContactKind::Rope,
             })
         })
     }

@@ -481,12 +481,16 @@ impl Forces {
     ) -> [Dual; 3] {
         let zero = Dual::constant(0.0);
         let joint = &self.mechanism.joints[joint];
+        let reported = Reported::of(&joint.kind);
         if matches!(
-            Reported::of(&joint.kind),
-            Reported::Torque | Reported::Effort
+            reported,
+            Reported::Torque | Reported::Effort | Reported::Tension
         ) {
             let sum = rows.fold(zero, |sum, (_, multiplier)| sum + multiplier);
-            return [zero, zero, sum];
+            return match reported {
+                Reported::Tension => [-sum, zero, zero],
+                _ => [zero, zero, sum],
+            };
         }
         let body = self.mechanism.markers[joint.to.index()].body;
         let origin = |body: usize| [0, 1].map(|c| at.coordinate(3 * body + c).value);

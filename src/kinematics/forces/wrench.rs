@@ -164,9 +164,12 @@ impl ReactionRows {
         let mechanism = system.mechanism();
         let Joint { kind, to, .. } = &mechanism.joints[joint];
         let rows = &self.joints[joint];
-        if let (Reported::Torque | Reported::Effort, &[row]) = (Reported::of(kind), &rows[..]) {
+        match (Reported::of(kind), &rows[..]) {
             // The row has the entry one at the second wheel, or the equation.
-            return [0.0, 0.0, multipliers[row]];
+            (Reported::Torque | Reported::Effort, &[row]) => return [0.0, 0.0, multipliers[row]],
+            // A force that lengthens a rope pushes.
+            (Reported::Tension, &[row]) => return [-multipliers[row], 0.0, 0.0],
+            _ => {}
         }
         let to = at.marker(*to);
         let mut wrench = Wrench::new(to.body);
@@ -210,14 +213,25 @@ impl ReactionRows {
     }
 }
 
-/// A contact that can only push.
+/// A contact that can only push, or a rope, which can only pull.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
     /// Index of the joint.
     pub(super) joint: usize,
     /// Row of the force between the two parts.
     row: usize,
-    is_flat: bool,
+    pub(super) kind: ContactKind,
+}
+
+/// Kinds of [`Contact`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ContactKind {
+    /// A contact whose row holds the distance of its parts.
+    Distance,
+    /// A flat face on a cam.
+    Flat,
+    /// A rope.
+    Rope,
 }
 
 impl Contact {
@@ -226,31 +240,27 @@ impl Contact {
         let joints = mechanism.joints.iter().enumerate();
         let contact = |(joint, Joint { kind, .. }): (usize, &Joint)| {
             // The order of the rows is that of `system::joint`.
-            let place = match kind {
+            let (place, kind) = match kind {
                 JointKind::Cam {
                     follower: CamFollower::Knife,
                     ..
-                } => 0,
-                JointKind::Cam { .. } | JointKind::Rolling { .. } => 1,
+                } => (0, ContactKind::Distance),
+                JointKind::Cam {
+                    follower: CamFollower::Flat,
+                    ..
+                } => (1, ContactKind::Flat),
+                JointKind::Cam { .. } | JointKind::Rolling { .. } => (1, ContactKind::Distance),
+                JointKind::Rope(_) => (0, ContactKind::Rope),
                 _ => return None,
             };
             let row = *rows.joints[joint].get(place)?;
-            Some(Self {
-                joint,
-                row,
-                is_flat: matches!(
-                    kind,
-                    JointKind::Cam {
-                        follower: CamFollower::Flat,
-                        ..
-                    }
-                ),
-            })
+            Some(Self { joint, row, kind })
         };
         joints.filter_map(contact).collect()
     }
 
-    /// Returns the force between the two parts \[N\], positive if they push each other.
+    /// Returns the force between the two parts \[N\], positive if they push each other; the tension
+    /// of a rope.
     pub(super) fn force(
         &self,
         mechanism: &Mechanism,
@@ -258,9 +268,11 @@ impl Contact {
         multipliers: &[f64],
     ) -> f64 {
         let force = multipliers[self.row];
-        if !self.is_flat {
+        match self.kind {
             // The distance of the two parts is held: a force that lengthens it pushes.
-            return force;
+            ContactKind::Distance => return force,
+            ContactKind::Rope => return -force,
+            ContactKind::Flat => {}
         }
         // The row moves the face against its normal. The cam's pole is on the inner side of each
         // tangent of its contour.

@@ -146,8 +146,8 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
     (echelon.kept().len() == system.unknowns()).then_some(origins)
 }
 
-/// Returns the length of a link, or between the two pins of a body, that would close an origin, or
-/// whether the phase of its wheels as drawn would.
+/// Returns the length of a link or a rope, or between the two pins of a body, that would close an
+/// origin, or whether the phase of its wheels as drawn would.
 ///
 /// Before: all other origins are closed at the present pose.
 fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
@@ -159,12 +159,12 @@ fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
     let point = |marker| state.at.marker(marker).point;
     let length = |from, to| (point(to) - point(from)).norm();
     match joint.kind {
-        JointKind::Link { .. } => {
+        JointKind::Link { .. } | JointKind::Rope(_) => {
             let row = system.rows_of(&[origin])[0];
             Some(Fit::Length {
                 origin: origin.describe(mechanism),
                 between: None,
-                length: length(joint.from, joint.to),
+                length: system.equations()[row].constraint.value(&state.at),
                 present: state.targets.constant(row),
             })
         }

@@ -7,12 +7,12 @@ use crate::kinematics::constraint::configuration::{
 use crate::kinematics::constraint::{
     Axis, Coincidence, Constraint, Contour, CoordinateRelation, CoupledExpression, CoupledFunction,
     Coupling, Dimension, FlatContact, FlatFace, JointUnknown, KnifeEdge, RackAndPinion, Roller,
-    RollerContact, WheelPair, of_coordinate,
+    RollerContact, RopeLength, Station, WheelPair, of_coordinate,
 };
 use crate::mechanism::{
     BodyId, CamFollower, Coordinate, CoordinateEquation, CoordinateKind, Expression, Joint,
     JointKind, LinearForm, Mechanism, Motion, MotionInForce, ParameterId, Phase, Profile,
-    ProfileInForce, RackSide, WheelSizes,
+    ProfileInForce, RackSide, Rope, WheelSizes,
 };
 
 /// Coefficients, profiles, laws and unknowns of joints.
@@ -209,6 +209,7 @@ pub(super) fn relations(
                 }
             }
         }
+        JointKind::Rope(rope) => vec![(run(joint, rope, parts), rope.length.clone())],
     }
 }
 
@@ -219,6 +220,24 @@ fn held_at(phase: &Phase) -> Expression {
         Phase::At(value) => value.clone(),
         Phase::Drawn => Expression::constant(0.0),
     }
+}
+
+/// Returns the relation of a rope.
+fn run(joint: &Joint, rope: &Rope, parts: &mut JointParts) -> Box<dyn Constraint> {
+    let mut coefficient = |expression: &Expression, what: &str| {
+        parts.coefficient(expression, format!("{what} of joint `{}`", joint.name))
+    };
+    let stations = rope.points.iter().map(|point| Station {
+        marker: point.marker,
+        pulley: point.pulley.as_ref().map(|pulley| {
+            let radius = coefficient(&pulley.radius, "the radius of a pulley");
+            (radius, pulley.side.sign())
+        }),
+    });
+    let stations = stations.collect();
+    let numbers = rope.parts.iter();
+    let numbers = numbers.map(|number| coefficient(number, "a number of parts"));
+    Box::new(RopeLength::new(stations, numbers.collect()))
 }
 
 /// Returns the relation of a wheel, which has marker i, that rolls on the x-axis of marker j.

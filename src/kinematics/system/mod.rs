@@ -8,6 +8,7 @@ mod linearise;
 mod parts;
 pub(super) mod structure;
 
+use std::any::Any;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -16,11 +17,13 @@ pub(super) use linearise::{RowValue, Values};
 
 use super::constraint::configuration::{Configuration, on_nearest_turn};
 use super::constraint::moving_configuration::VariedConfiguration;
-use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, TurnEffect};
+use crate::kinematics::constraint::{
+    self, Constraint, Dimension, Incidence, RopeLength, TurnEffect,
+};
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    DriverId, Expression, Jet, Mechanism, Motion, MotionInForce, MovingProfile, Number,
+    DriverId, Expression, Jet, JointKind, Mechanism, Motion, MotionInForce, MovingProfile, Number,
     ParameterId, Phase,
 };
 
@@ -55,6 +58,8 @@ pub struct System {
     equations: Vec<Equation>,
     /// The row of each driver.
     driver_rows: Vec<usize>,
+    /// The joints that are ropes, with their rows.
+    ropes: Vec<(usize, usize)>,
     joint_parts: JointParts,
     /// Size of the part that each body belongs to, as a part of the mechanism's size.
     part_sizes: Vec<f64>,
@@ -82,9 +87,13 @@ impl System {
     pub fn new(mechanism: Arc<Mechanism>) -> Self {
         let mut equations = Vec::new();
         let mut joint_parts = JointParts::default();
+        let mut ropes = Vec::new();
         for (index, joint) in mechanism.joints.iter().enumerate() {
             let origin = Origin::Joint(index);
             joint_parts.parameters.clear();
+            if matches!(joint.kind, JointKind::Rope(_)) {
+                ropes.push((index, equations.len()));
+            }
             for (constraint, target) in
                 joint::relations(&mechanism, origin, joint, &mut joint_parts)
             {
@@ -129,6 +138,7 @@ impl System {
             mechanism,
             equations,
             driver_rows,
+            ropes,
             joint_parts,
             part_sizes,
         };
@@ -163,6 +173,14 @@ impl System {
             let value = self.equations[row].constraint.value(&at);
             self.equations[row].target = Target::Constant(Expression::constant(value));
         }
+    }
+
+    /// Returns the joints that are ropes, with their relations.
+    pub(in crate::kinematics) fn ropes(&self) -> impl Iterator<Item = (usize, &RopeLength)> {
+        self.ropes.iter().filter_map(|&(joint, row)| {
+            let constraint: &dyn Any = &*self.equations[row].constraint;
+            Some((joint, constraint.downcast_ref()?))
+        })
     }
 
     /// Returns the mechanism.

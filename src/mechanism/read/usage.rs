@@ -29,8 +29,7 @@ impl<'a> Context<'a> {
             }
         };
         for joint in &mechanism.joints {
-            let markers: Vec<_> = joint.markers().collect();
-            hold(&markers);
+            joint.markers().for_each(|marker| hold(&[marker]));
         }
         let constraints = mechanism.constraints.iter().map(|c| c.coordinate);
         let drivers = mechanism.drivers.iter().map(|d| d.coordinate);

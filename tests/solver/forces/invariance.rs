@@ -467,6 +467,11 @@ fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
             JointKind::Cam { .. } | JointKind::Coupling(_) => return None,
             // A ratio.
             JointKind::Gear { .. } | JointKind::Belt { .. } => {}
+            JointKind::Rope(rope) => {
+                times(&mut rope.length, length);
+                let pulleys = rope.points.iter_mut().filter_map(|p| p.pulley.as_mut());
+                pulleys.for_each(|pulley| times(&mut pulley.radius, length));
+            }
             JointKind::Revolute | JointKind::Translational | JointKind::Slot | JointKind::Weld => {}
         }
     }

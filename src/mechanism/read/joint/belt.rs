@@ -10,7 +10,7 @@ use super::phase::{PhaseOf, phase};
 use super::{joint_type, wheels};
 
 joint_type! {
-    "belt" or "chain" or "pulley" => |keys, _| Some(JointKind::Belt {
+    "belt" or "chain" => |keys, _| Some(JointKind::Belt {
         sizes: wheels::sizes(keys.radii, keys.teeth)?,
         crossed: keys.crossed.or(false)?,
         carrier: keys.carrier.or(None)?,

@@ -5,23 +5,25 @@ use std::collections::HashSet;
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::{LawOfCoupling, MovingNames};
 use crate::mechanism::read::context::Context;
+#[cfg(feature = "cli")]
+use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Item, Kind, schema};
 use crate::mechanism::read::motion::MotionKeys;
 use crate::mechanism::read::number::NUMBER;
 use crate::mechanism::read::points::PointKeys;
-use crate::mechanism::read::table::table;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
-    Coordinate, CoordinateEquation, CoordinateKind, Dimension, Expression, JointKind, MOST_COUPLED,
-    Motion, MotionTable, Phase, Variable,
+    Coordinate, CoordinateEquation, CoordinateKind, Dimension, Expression, JointKind, MOST_BODIES,
+    MOST_COUPLED, Motion, MotionTable, Phase, Variable,
 };
 
-#[cfg(feature = "cli")]
-use super::super::kind::Described;
 use super::phase::{PhaseOf, phase};
-use super::{Joined, JointKeys, JointType};
+use super::{Made, joint_type};
 
-table! {
+joint_type! {
+    own markers;
+    "coupling" or "screw" or "mimic" or "equation" or "differential" or "geneva" => |keys, context| context.coupling(keys);
+
     /// An equation between coordinates: of drivers, and of measures that are no formulas.
     struct Coupling<'a> {
         /// Equation, such as "travel = pitch*turn/(2*pi)", over names of drivers and measures,
@@ -35,17 +37,6 @@ table! {
         phase: Phase = PhaseOf(NUMBER),
     }
 }
-
-pub(super) static TYPE: JointType = JointType {
-    name: "coupling",
-    synonyms: &["screw", "mimic", "equation", "differential", "geneva"],
-    read: |context, fields| {
-        let keys = context.further::<JointKeys<'_>, Coupling<'_>>(fields);
-        context.coupling(keys)
-    },
-    #[cfg(feature = "cli")]
-    schema: <(JointKeys<'_>, Coupling<'_>) as Described>::schema,
-};
 
 /// Returns the keys of a coupling that another term stands for.
 pub(super) fn written(term: &str) -> Option<&'static str> {
@@ -103,7 +94,7 @@ impl<'a> Kind<'a> for LawOfOneArgument {
 }
 
 impl<'a> Context<'a> {
-    fn coupling(&mut self, keys: Coupling<'a>) -> Option<Joined> {
+    fn coupling(&mut self, keys: Coupling<'a>) -> Option<Made> {
         let law = keys.law.optional()?;
         let phase = phase(keys.phase)?;
         let value = keys.equation.value?;
@@ -169,8 +160,8 @@ impl<'a> Context<'a> {
         let coordinates = places.iter().map(|&place| self.coordinates[place].1);
         let markers = coordinates.flat_map(|coordinate| coordinate.markers());
         let bodies: HashSet<_> = markers.filter_map(|m| self.carriers[m.index()]).collect();
-        let most = |count, things| {
-            format!("the equation has {count} {things}, {MOST_COUPLED} at most are possible")
+        let most = |count, things, most: usize| {
+            format!("the equation has {count} {things}, {most} at most are possible")
         };
         let (message, help) = if places.is_empty() {
             (
@@ -178,9 +169,15 @@ impl<'a> Context<'a> {
                 "name drivers and measures: `travel = pitch*turn/(2*pi)`",
             )
         } else if places.len() > MOST_COUPLED {
-            (most(places.len(), "coordinates"), "use several couplings")
-        } else if bodies.len() > MOST_COUPLED {
-            (most(bodies.len(), "bodies"), "use several couplings")
+            (
+                most(places.len(), "coordinates", MOST_COUPLED),
+                "use several couplings",
+            )
+        } else if bodies.len() > MOST_BODIES {
+            (
+                most(bodies.len(), "bodies", MOST_BODIES),
+                "use several couplings",
+            )
         } else {
             return Some(());
         };

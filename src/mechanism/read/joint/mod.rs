@@ -10,6 +10,7 @@ mod rack_and_pinion;
 mod revolute;
 mod revolute_translational;
 mod rolling;
+mod rope;
 mod slot;
 mod translational;
 mod weld;
@@ -33,7 +34,7 @@ table! {
         description: String = Text,
     }
 
-    /// A joint between two markers.
+    /// A joint between two bodies.
     struct PairKeys<'a> {
         /// Markers i and j, on different bodies.
         #[required(MARKERS)]
@@ -41,8 +42,8 @@ table! {
     }
 }
 
-/// A kind of joint with its markers i and j.
-type Joined = (JointKind, [MarkerId; 2]);
+/// Joint that the keys of its type make, with its markers i and j.
+type Made = (JointKind, [MarkerId; 2]);
 
 /// Type of joint as the file knows it.
 pub(super) struct JointType {
@@ -50,16 +51,34 @@ pub(super) struct JointType {
     name: &'static str,
     /// Other terms for it.
     synonyms: &'static [&'static str],
-    /// Reads the keys of the type: its kind, and markers i and j.
-    read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<Joined>,
+    /// Reads the keys of the type.
+    read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<Made>,
     #[cfg(feature = "cli")]
     schema: fn() -> serde_json::Value,
 }
 
-/// Declares a type of joint between two markers: its name and other terms for it, its keys besides
-/// those of every such joint, and the joint that they make.
+/// Declares a type of joint: its name and other terms for it, its keys besides those of every
+/// joint, and the joint that they make. One with `own markers` reads these too, and returns i and j.
 macro_rules! joint_type {
+    (own markers; $($rest:tt)+) => {
+        $crate::mechanism::read::joint::joint_type! {
+            @by ($crate::mechanism::read::joint::read_own)
+                [$crate::mechanism::read::joint::JointKeys<'_>]
+            $($rest)+
+        }
+    };
+    ($name:literal $($rest:tt)+) => {
+        $crate::mechanism::read::joint::joint_type! {
+            @by ($crate::mechanism::read::joint::read_pair)
+                [(
+                    $crate::mechanism::read::joint::JointKeys<'_>,
+                    $crate::mechanism::read::joint::PairKeys<'_>,
+                )]
+            $name $($rest)+
+        }
+    };
     (
+        @by ($read:path) [$common:ty]
         $name:literal $(or $synonym:literal)* => $kind:expr;
         $(#[$($attribute:tt)+])+
         struct $keys:ident<$life:lifetime> { $($key:tt)* }
@@ -74,20 +93,35 @@ macro_rules! joint_type {
             synonyms: &[$($synonym),*],
             read: |context, fields| {
                 let kind: for<$life> fn($keys<$life>, &mut $crate::mechanism::read::context::Context<$life>) -> _ = $kind;
-                let kind = kind(context.further::<$crate::mechanism::read::joint::CommonKeys<'_>, $keys<'_>>(fields), context);
-                let pair = <$crate::mechanism::read::joint::PairKeys<'_> as $crate::mechanism::read::table::Keys<'_>>::read(context, fields);
-                Some((kind?, pair.markers.value?))
+                $read(context, fields, kind)
             },
             #[cfg(feature = "cli")]
-            schema: <($crate::mechanism::read::joint::CommonKeys<'_>, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema,
+            schema: <($common, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema,
         };
     };
 }
 
-use joint_type;
+/// Reads the keys of a joint between two markers, and makes it.
+fn read_pair<'a, K: Keys<'a>>(
+    context: &mut Context<'a>,
+    fields: &Fields<'a>,
+    kind: fn(K, &mut Context<'a>) -> Option<JointKind>,
+) -> Option<Made> {
+    let (pair, keys) = context.further::<JointKeys<'a>, (PairKeys<'a>, K)>(fields);
+    let kind = kind(keys, context);
+    Some((kind?, pair.markers.value?))
+}
 
-/// The keys of every joint between two markers.
-type CommonKeys<'a> = (JointKeys<'a>, PairKeys<'a>);
+/// Reads the keys of a joint with markers of its own, and makes it.
+fn read_own<'a, K: Keys<'a>>(
+    context: &mut Context<'a>,
+    fields: &Fields<'a>,
+    kind: fn(K, &mut Context<'a>) -> Option<Made>,
+) -> Option<Made> {
+    kind(context.further::<JointKeys<'a>, K>(fields), context)
+}
+
+use joint_type;
 
 /// Every type of joint; a new one is a file and a line here.
 static JOINT_TYPES: &[&JointType] = &[
@@ -103,6 +137,7 @@ static JOINT_TYPES: &[&JointType] = &[
     &rolling::TYPE,
     &cam::TYPE,
     &coupling::TYPE,
+    &rope::TYPE,
 ];
 
 const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT_TYPE, || {
