@@ -18,6 +18,7 @@ TABLES = {
     "Ground": ("[ground]\nNONE", "`[ground]`"),
     "Bodies": ("[bodies.b]\nNONE", "body `b`"),
     "Joints": ("[joints.j]\ntype = 'revolute'\nNONE", "joint `j`"),
+    "Pulleys": ("[joints.r]\ntype = 'rope'\nmarkers = [{ NONE }, 'ground.O']", "the pulley"),
     "Constraints": ("[constraints.c]\nNONE", "constraint `c`"),
     "Drivers": ("[drivers.d]\nNONE", "driver `d`"),
     "Measures": ("[measures.m]\nNONE", "measure `m`"),
@@ -45,6 +46,7 @@ JOINT_TYPES = [
     "rolling",
     "cam",
     "coupling",
+    "rope",
 ]
 
 WORDS = {
@@ -54,6 +56,7 @@ WORDS = {
     "kind of ends": "[drivers.N]\nmotion = { ends = 'none_such' }",
     "follower": "[joints.F]\ntype = 'cam'\nfollower = 'none_such'",
     "side": "[joints.S]\ntype = 'rack_and_pinion'\nside = 'none_such'",
+    "side of a pulley": "[joints.P]\ntype = 'rope'\nmarkers = [{ side = 'none_such' }, 'g.O']",
     "treatment": "[outputs]\nindeterminate = 'none_such'",
     "unit": "[parameters.u]\nvalue = 1\nunit = 'none_such'",
     "display unit": "[parameters.v]\nvalue = 1\nunit = 'm'\ndisplay = 'none_such'",

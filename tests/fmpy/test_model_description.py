@@ -150,6 +150,7 @@ REACTIONS = {
     ),
     "gear": "torque",
     "belt": "torque",
+    "rope": "tension",
 }
 """Components of the reaction of each type of joint, of a cam of each follower."""
 

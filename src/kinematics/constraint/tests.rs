@@ -168,10 +168,10 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
             ("b.B", None),
         ],
         &[
-            ("a.O", None),
-            ("a.A", left),
+            ("ground.G", None),
+            ("ground.H", left),
             ("c.C", left),
-            ("ground.H", None),
+            ("a.O", None),
         ],
     ] {
         let station = |&(marker, pulley)| Station {

@@ -50,7 +50,7 @@ table! {
     }
 }
 
-const SIDE: Word<PulleySide> = Word::new("side", code::ILLEGAL_VALUE, || {
+const SIDE: Word<PulleySide> = Word::new("side of a pulley", code::ILLEGAL_VALUE, || {
     vec![("left", PulleySide::Left), ("right", PulleySide::Right)]
 });
 
