@@ -33,7 +33,7 @@ RATES = {
     "phi": ("omega", "alpha"),
     "position": ("velocity", "acceleration"),
 }
-OF_FORCES = set("effort power inertia bias fx fy torque kinetic potential".split())
+OF_FORCES = set("effort power inertia bias fx fy torque tension kinetic potential".split())
 """Variables of forces, which are no part of the motion."""
 
 NEXT_TO_CHANGE_POINTS = {"four_bar_chain": 4}
@@ -52,19 +52,33 @@ OTHER_JOINTS = """
     parameters.tilt = { value = 0.3, unit = "rad" }
     parameters.offset = { value = 0.01, unit = "m" }
     parameters.gap = { value = 0.03, unit = "m" }
-    ground.markers = { A = [0, 0], B = ["base", 0], C = [0.1, 0.15] }
+    [ground.markers]
+    A = [0, 0]
+    B = ["base", 0]
+    C = [0.1, 0.15]
+    D = [0.35, 0, 0.1]
+    E = [0.3, 0.2]
+    F = [0.15, 0.3]
     [bodies]
     crank = { markers = { O = [0, 0] } }
     wheel = { markers = { O = [0, 0], R = ["second", 0.01, "tilt"] }, estimate = ["base", 0, 0] }
     plate = { markers = { R = [0.01, 0.02], Q = [0.05, 0] }, estimate = [0.24, 0, 0.3] }
-    lever = { markers = { C = [0, 0], L = [0, 0, "tilt"] }, estimate = [0.1, 0.15, -1] }
+    lever = { markers = { C = [0, 0], K = [0.04, 0], L = [0, 0, "tilt"] }, estimate = [0.1, 0.15, -1] }
     rider = { markers = { M = [0.01, 0] }, estimate = [0.14, 0.1, 0] }
+    block = { markers = { P = [0, 0], S = [0.02, 0.03] }, estimate = [0.4, 0.02, 0] }
     [joints]
     A = { type = "revolute", markers = ["ground.A", "crank.O"] }
     B = { type = "revolute", markers = ["ground.B", "wheel.O"] }
     C = { type = "revolute", markers = ["ground.C", "lever.C"] }
     R = { type = "weld", markers = ["wheel.R", "plate.R"] }
     Q = { type = "revolute_translational", markers = ["lever.L", "plate.Q"], offset = "offset" }
+    on = { type = "translational", markers = ["ground.D", "block.P"] }
+    [joints.rope]
+    type = "rope"
+    markers = ["lever.K", "ground.E", { marker = "block.S", radius = "second/4", side = "right" },
+        { marker = "ground.F", radius = "offset", side = "left" }, "ground.C"]
+    length = "6*base"
+    parts = ["base/0.1", 1, 1, 1]
     [joints.belt]
     type = "belt"
     markers = ["crank.O", "wheel.O"]

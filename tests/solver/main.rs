@@ -19,6 +19,7 @@ mod modes;
 mod motion;
 mod range;
 mod redundancy;
+mod rope;
 mod sensitivity;
 mod singular;
 mod singular_kinds;

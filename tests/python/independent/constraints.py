@@ -29,6 +29,8 @@ class Entry(NamedTuple):
     """Polar angle of the contact, an unknown of its own."""
     formula: Callable[[str], Any]
     """Evaluates an expression over parameters, coordinates by their names, and the own `law`."""
+    way: list = []
+    """Points and centres over which a rope runs, with the radii there."""
 
     def __getitem__(self, key):
         return self.number(self.keys[key])
@@ -158,6 +160,25 @@ def flat(at: Entry):
     return [face.turned() @ tangent(at), face.turned() @ to_contact]
 
 
+def rope(at: Entry):
+    """The ends of a leg lie on the two circles, in the direction in which both have one normal."""
+    parts = [at.number(part) for part in at.keys.get("parts", [1] * (len(at.way) - 1))]
+    length, before = mp.zero, None
+    for part, (p, r), (q, s) in zip(parts, at.way, at.way[1:]):
+        along = (q - p) * (1 / (q - p).length())
+        cosine = (s - r) / (q - p).length()
+        # Towards the side on which pulleys are on the left.
+        normal = along * cosine + along.turned() * mp.sqrt(1 - cosine**2)
+        length += part * ((q - normal * s) - (p - normal * r)).length()
+        if r:
+            side = 1 if mp.re(r) > 0 else -1
+            turn = mp.acos(before @ normal)
+            turns_back = mp.re(before.turned() @ normal) * side < 0
+            length += part * side * r * (2 * mp.pi - turn if turns_back else turn)
+        before = normal
+    return [length - at["length"]]
+
+
 def gap(at: Entry):
     """Returns the distance from the contact on the contour to the follower's face or point."""
     to_contact = contour(at) - at.i.local(at.j.point)
@@ -172,7 +193,7 @@ JOINTS = {
     function.__name__: function
     for function in (
         revolute, translational, slot, link, revolute_translational, weld,
-        gear, belt, rack_and_pinion, rolling, coupling, cam,
+        gear, belt, rack_and_pinion, rolling, coupling, cam, rope,
     )
 }  # fmt: skip
 """Residuals of each type of joint."""

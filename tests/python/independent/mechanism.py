@@ -91,7 +91,8 @@ class Placed:
 
     def entry(self, keys: dict, place: int | None = None) -> Entry:
         """Returns an entry of the file in this pose; joints have a place among the joints."""
-        i, j = map(self.frame, keys["markers"]) if "markers" in keys else (GROUND, GROUND)
+        ends = [keys["markers"][end] for end in (0, -1)] if "markers" in keys else []
+        i, j = map(self.frame, ends) if ends else (GROUND, GROUND)
         return Entry(
             keys,
             i,
@@ -102,6 +103,7 @@ class Placed:
             self.mechanism.profiles.get(place),
             self.contacts.get(place),
             lambda text: evaluate(text.strip(), self.names(place)),
+            [self.over(at) for at in keys["markers"]] if keys.get("type") == "rope" else [],
         )
 
     def names(self, place: int | None) -> ChainMap:
@@ -109,6 +111,14 @@ class Placed:
         file = self.mechanism.file
         named = {name: coordinate(self.entry(keys)) for name, keys in coordinates(file).items()}
         return ChainMap(named, {"law": self.mechanism.laws.get(place)}, self.mechanism.names)
+
+    def over(self, at):
+        """Returns the point or centre over which a rope runs, and the radius there, negative for a
+        pulley on the right."""
+        if isinstance(at, str):
+            return self.frame(at).point, mp.zero
+        side = {"left": 1, "right": -1}[at["side"]]
+        return self.frame(at["marker"]).point, side * self.mechanism.number(at["radius"])
 
     def residual(self, driven: dict) -> list:
         """Returns the residuals of all equations for these values of the drivers."""

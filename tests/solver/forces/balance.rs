@@ -9,7 +9,7 @@ use std::sync::Arc;
 use biela::kinematics::{ForceQuantity, Reported};
 use biela::mechanism::{
     Body, BodyId, CamFollower, Coordinate, CoordinateKind, DriverId, Expression, Joint, JointKind,
-    Load, MarkerId, Mechanism,
+    Load, MarkerId, Mechanism, Pulley, PulleySide, Rope, RopePoint,
 };
 use nalgebra::{Rotation2, Vector2};
 
@@ -104,6 +104,9 @@ impl Balance<'_> {
         let (i, j) = (self.body(joint.from), self.body(joint.to));
         let at = self.point(joint.to);
         let (force, torque) = self.reaction(index);
+        if let JointKind::Rope(rope) = &joint.kind {
+            return self.add_rope(rope, force.x);
+        }
         let (JointKind::Gear { sizes, carrier, .. } | JointKind::Belt { sizes, carrier, .. }) =
             &joint.kind
         else {
@@ -132,6 +135,30 @@ impl Balance<'_> {
             (*carrier, (k - 1.0) * torque),
         ] {
             self.add(body, at, Vector2::zeros(), torque);
+        }
+    }
+
+    /// Adds the pulls of a rope along its tangents, at the points at which it leaves its pulleys.
+    fn add_rope(&mut self, rope: &Rope, tension: f64) {
+        let parameters = self.loaded.solver.pose().parameters.clone();
+        let number = |e: &Expression| e.evaluate(&|p| parameters[p.index()], 0.0);
+        let circle = |balance: &Self, point: &RopePoint| {
+            let radius = |pulley: &Pulley| match pulley.side {
+                PulleySide::Left => number(&pulley.radius),
+                PulleySide::Right => -number(&pulley.radius),
+            };
+            let radius = point.pulley.as_ref().map_or(0.0, radius);
+            (balance.point(point.marker), radius)
+        };
+        for (pair, part) in rope.points.windows(2).zip(&rope.parts) {
+            let ((p, r), (q, s)) = (circle(self, &pair[0]), circle(self, &pair[1]));
+            // The normal of both circles is inclined to the line of their centres.
+            let inclined = ((s - r) / (q - p).norm()).acos();
+            let normal = Rotation2::new(inclined) * (q - p).normalize();
+            let (start, end) = (p - normal * r, q - normal * s);
+            let pull = (end - start).normalize() * number(part) * tension;
+            self.add(self.body(pair[0].marker), start, pull, 0.0);
+            self.add(self.body(pair[1].marker), end, -pull, 0.0);
         }
     }
 

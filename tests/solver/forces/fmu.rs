@@ -107,6 +107,43 @@ fn a_contact_that_pulls_is_reported_once_per_excursion() {
     }
 }
 
+/// The counterweight of a sash that accelerates faster than gravity cannot follow: its cord would
+/// have to push. The acceleration is −0.2 m ω² sin ωt; one warning per period.
+#[test]
+fn a_rope_that_would_be_slack_is_reported_once_per_excursion() {
+    for (omega, expected) in [(6.0_f64, 0), (10.0, 2)] {
+        let warnings = Warnings::default();
+        let mechanism = shipped("sash_window");
+        let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it closes");
+        let mut instance = Instance::new(model, Box::new(warnings.clone()), true);
+        let motion = |t: f64| {
+            let (sin, cos) = (omega * t).sin_cos();
+            [
+                0.8 + 0.2 * sin,
+                0.2 * omega * cos,
+                -0.2 * omega * omega * sin,
+            ]
+        };
+        instance.setup_experiment(0.0, None).expect("legal");
+        instance.set_real(&[1, 2, 3], &motion(0.0)).expect("legal");
+        instance.enter_initialization_mode().expect("legal");
+        instance.exit_initialization_mode().expect("legal");
+        let steps = 100;
+        let h = 2.2 * std::f64::consts::TAU / omega / f64::from(steps);
+        for step in 0..steps {
+            let t = h * f64::from(step);
+            instance
+                .set_real(&[1, 2, 3], &motion(t + h))
+                .expect("legal");
+            instance.do_step(t, h).expect("the way is free");
+        }
+        let found = warnings.0.lock().expect("one thread");
+        let slack = |message: &&String| message.contains("rope `cord` would be slack");
+        assert_eq!(found.iter().filter(slack).count(), expected, "{found:?}");
+        assert_eq!(found.len(), expected, "{found:?}");
+    }
+}
+
 const HOIST: &str = r#"
     format = 1
     name = "hoist"

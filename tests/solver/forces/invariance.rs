@@ -209,7 +209,12 @@ impl Comparison {
                 [0, 1, 2].map(|k| loaded.forces.value(ForceQuantity::Reaction(index, k)))
             };
             let [x, y, torque] = of(&self.base);
-            let (force, torque) = rule(index, Vector2::new(x, y), torque);
+            let force = Vector2::new(x, y);
+            let (force, torque) = match joint.kind {
+                // A tension has no direction.
+                JointKind::Rope(_) => (force, torque),
+                _ => rule(index, force, torque),
+            };
             let found = of(&self.other);
             let factors = [scale.force(), scale.force(), scale.force() * scale.length];
             for (k, expected) in [force.x, force.y, torque].into_iter().enumerate() {

@@ -197,7 +197,7 @@ impl<'a> Context<'a> {
                 let message = "a pulley has the same number of parts on both sides";
                 self.error(code::ILLEGAL_VALUE, pair[1].span.clone(), message)
                     .suggest(
-                        "only a marker without `radius` is between different numbers of parts",
+                        "only a marker without a pulley is between different numbers of parts",
                     );
                 return None;
             }
