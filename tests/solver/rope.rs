@@ -71,7 +71,7 @@ fn a_rope_that_leaves_its_pulley_is_told_once_per_excursion() {
         let q = &solver.pose().q;
         let along = (q[3] - q[0]).hypot(q[4]);
         // The distance of the pulley's centre from that line, positive above it.
-        let above = (q[4] * (1.0 - q[0])) / along * -1.0;
+        let above = -q[4] * (1.0 - q[0]) / along;
         let left: Vec<_> = solver
             .off_pulleys(&mut off)
             .map(|l| l.to_string())
