@@ -76,6 +76,8 @@ PARTS = {
     "an equation of the mechanism": "… has no finite value",
     "the radius of joint `…`": "… has no finite value",
     "a wheel's size in joint `…`": "… has no finite value",
+    "a pulley's radius in joint `…`": "… has no finite value",
+    "a number of parts in joint `…`": "… has no finite value",
     "the mass, inertia or center of body `…`": "… has no finite value",
     "the … of body `…`": "the … of body `…` is …; it must …",
     "… is …; it must …": "the … of body `…` is …; it must …",

@@ -23,6 +23,7 @@ WRONG = {
     "illegal-name_keyword",
     "illegal-name_long",
     "illegal-value",
+    "illegal-value_rope",
     "missing-key",
     "no-bodies",
     "reserved-name",

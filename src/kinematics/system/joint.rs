@@ -224,19 +224,19 @@ fn held_at(phase: &Phase) -> Expression {
 
 /// Returns the relation of a rope.
 fn run(joint: &Joint, rope: &Rope, parts: &mut JointParts) -> Box<dyn Constraint> {
-    let mut coefficient = |expression: &Expression, what: &str| {
-        parts.coefficient(expression, format!("{what} of joint `{}`", joint.name))
-    };
     let stations = rope.points.iter().map(|point| Station {
         marker: point.marker,
         pulley: point.pulley.as_ref().map(|pulley| {
-            let radius = coefficient(&pulley.radius, "the radius of a pulley");
+            let what = format!("a pulley's radius in joint `{}`", joint.name);
+            let radius = parts.coefficient(&pulley.radius, what);
             (radius, pulley.side.sign())
         }),
     });
     let stations = stations.collect();
-    let numbers = rope.parts.iter();
-    let numbers = numbers.map(|number| coefficient(number, "a number of parts"));
+    let numbers = rope.parts.iter().map(|number| {
+        let what = format!("a number of parts in joint `{}`", joint.name);
+        parts.coefficient(number, what)
+    });
     Box::new(RopeLength::new(stations, numbers.collect()))
 }
 
