@@ -281,6 +281,28 @@ impl<'a> Text<'a> {
         );
     }
 
+    /// Adds a rope over markers and over pulleys of some radius on the left (1) or right (-1) of the
+    /// rope.
+    pub fn rope(&mut self, name: &str, way: &[(&str, Option<(String, f64)>)], length: &str) {
+        let sign = if self.view.reversed { -1.0 } else { 1.0 };
+        let mut way: Vec<String> = (way.iter())
+            .map(|(marker, pulley)| match (self.marker(marker), pulley) {
+                (marker, None) => format!("'{marker}'"),
+                (marker, Some((radius, side))) => {
+                    let side = if sign * side > 0.0 { "left" } else { "right" };
+                    format!("{{ marker = '{marker}', radius = {radius}, side = '{side}' }}")
+                }
+            })
+            .collect();
+        if self.view.reversed {
+            way.reverse();
+        }
+        let (prefix, way) = (self.view.prefix, way.join(", "));
+        self.joints.push(format!(
+            "{prefix}{name} = {{ type = 'rope', markers = [{way}], length = {length} }}\n"
+        ));
+    }
+
     /// Adds a revolute.
     pub fn pin(&mut self, name: &str, [i, j]: [&str; 2]) {
         let markers = if self.view.reversed { [j, i] } else { [i, j] };

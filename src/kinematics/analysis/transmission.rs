@@ -26,7 +26,7 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockSolver, JacobianFactors};
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
-use crate::mechanism::{CoordinateKind, JointKind, MarkerId};
+use crate::mechanism::{BodyId, CoordinateKind, JointKind, MarkerId};
 
 /// Distance of a sine from 1 that is rounding: the angle has half of its digits there.
 const RIGHT: f64 = 1e-12;
@@ -40,6 +40,8 @@ enum Passage {
     Bar(usize, [MarkerId; 2]),
     /// A line of action that passes through a marker or, on a flat face, beside it.
     Line(usize, MarkerId),
+    /// A rope, by its row; its pulls on each body together have a line of action.
+    Rope(usize),
 }
 
 /// The joints of a mechanism that transmit force.
@@ -118,6 +120,9 @@ fn passage(system: &System, row: usize) -> Option<Passage> {
                 return None;
             };
             let joint = &system.mechanism().joints[joint];
+            if matches!(joint.kind, JointKind::Rope(_)) {
+                return Some(Passage::Rope(row));
+            }
             // The last row of a cam holds the distance of the two parts.
             let next = equations.get(row + 1).map(|next| next.origin);
             let is_contact =
@@ -227,29 +232,46 @@ impl<'a> Response<'a> {
                 largest_of(&[from, to, from + one, to - one])
             }
             Passage::Line(row, marker) => {
-                let mut gradient = Gradient::new();
-                let constraint = &self.system.equations()[row].constraint;
-                constraint.gradient(self.at, &mut gradient);
-                let marker = self.at.marker(marker).point;
-                let at = self.at;
-                let q_dot = self.open(row);
-                let mut largest = 0.0;
-                for &(body, [x, y, moment]) in gradient.bodies() {
-                    let force = Vector2::new(x, y);
-                    let square = force.norm_squared();
-                    if square > 0.0 {
-                        // The foot of the marker on the line of action.
-                        let arm = marker - at.frames()[body].origin;
-                        let torque = moment - arm.perp(&force);
-                        let arm = arm - perp(force) * (torque / square);
-                        let [vx, vy, omega] = [0, 1, 2].map(|k| q_dot[3 * body + k]);
-                        let speed = (Vector2::new(vx, vy) + perp(arm) * omega).norm();
-                        largest = nan_or_larger(largest, speed * square.sqrt());
-                    }
-                }
-                largest
+                let point = self.at.marker(marker).point;
+                self.fastest_on_lines(row, |_| point)
+            }
+            Passage::Rope(row) => {
+                let (system, at) = (self.system, self.at);
+                let mut ropes = system.ropes();
+                let rope = ropes
+                    .find(|(joint, _)| system.equations()[row].origin == Origin::Joint(*joint));
+                let (_, rope) = rope.expect("the row of a rope");
+                self.fastest_on_lines(row, |body| {
+                    let mut markers = rope.markers();
+                    let own = markers.find(|&m| at.marker(m).body.map(BodyId::index) == Some(body));
+                    own.map_or(at.frames()[body].origin, |marker| at.marker(marker).point)
+                })
             }
         }
+    }
+
+    /// Returns the largest speed of the feet, on the lines of action of the forces that a row exerts
+    /// on bodies, of the points that `point` returns for them, times the force.
+    fn fastest_on_lines(&mut self, row: usize, point: impl Fn(usize) -> Vector2<f64>) -> f64 {
+        let mut gradient = Gradient::new();
+        let constraint = &self.system.equations()[row].constraint;
+        constraint.gradient(self.at, &mut gradient);
+        let at = self.at;
+        let q_dot = self.open(row);
+        let mut largest = 0.0;
+        for &(body, [x, y, moment]) in gradient.bodies() {
+            let force = Vector2::new(x, y);
+            let square = force.norm_squared();
+            if square > 0.0 {
+                let arm = point(body) - at.frames()[body].origin;
+                let torque = moment - arm.perp(&force);
+                let arm = arm - perp(force) * (torque / square);
+                let [vx, vy, omega] = [0, 1, 2].map(|k| q_dot[3 * body + k]);
+                let speed = (Vector2::new(vx, vy) + perp(arm) * omega).norm();
+                largest = nan_or_larger(largest, speed * square.sqrt());
+            }
+        }
+        largest
     }
 }
 

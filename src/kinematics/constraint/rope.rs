@@ -94,6 +94,11 @@ impl RopeLength {
         }
     }
 
+    /// Returns the markers from the first to the last.
+    pub fn markers(&self) -> impl Iterator<Item = MarkerId> + '_ {
+        self.stations.iter().map(|station| station.marker)
+    }
+
     /// Returns the pulleys with their places among the stations.
     fn pulleys(&self) -> impl Iterator<Item = (usize, (CoefficientId, f64))> + '_ {
         let stations = self.stations.iter().enumerate();

@@ -6,6 +6,7 @@ mod groups;
 mod linkages;
 mod machines;
 mod redundant;
+mod ropes;
 mod sliders;
 mod wheels;
 
@@ -18,7 +19,7 @@ use crate::mutation::Chance;
 pub type Draw = fn(&mut Chance, Text<'_>) -> Case;
 
 /// The kinds with their names.
-pub const KINDS: [(&str, Draw); 32] = [
+pub const KINDS: [(&str, Draw); 34] = [
     ("four_bar", linkages::four_bar),
     ("six_bar", linkages::six_bar),
     ("slider_crank", sliders::slider_crank),
@@ -47,6 +48,8 @@ pub const KINDS: [(&str, Draw); 32] = [
     ("triad", groups::triad),
     ("ring_of_four", groups::ring_of_four),
     ("any_group", groups::any_group),
+    ("rope_on_arm", ropes::rope_on_arm),
+    ("counterweight", ropes::counterweight),
     ("three_cranks", redundant::three_cranks),
     ("double_guide", redundant::double_guide),
     ("cardan", redundant::cardan),
