@@ -7,6 +7,7 @@
 //! | `read` | from the document to the [`Mechanism`], or to all its problems |
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
+//! | `curve` | [`Curve`]: along which a point moves |
 //! | `rope` | [`Rope`]: points and pulleys that a rope runs over |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
@@ -23,6 +24,7 @@
 
 mod coordinate;
 mod coupling;
+mod curve;
 mod derived;
 mod diagnostic;
 mod encoding;
@@ -50,6 +52,7 @@ mod wording;
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use coordinate::{Coordinate, CoordinateKind};
 pub use coupling::{CoordinateEquation, MOST_COUPLED};
+pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub(crate) use expression::Values;
@@ -265,6 +268,8 @@ pub enum JointKind {
     },
     /// A rope from marker i to marker j over the points between them.
     Rope(Rope),
+    /// The point of marker j stays on a curve in the frame of marker i.
+    Curve(Curve),
 }
 
 /// Constant of a relation between wheels, or of an equation between coordinates.

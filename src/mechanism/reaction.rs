@@ -89,6 +89,8 @@ impl Reported {
             JointKind::Gear { .. } | JointKind::Belt { .. } => Self::Torque,
             JointKind::Coupling(_) => Self::Effort,
             JointKind::Rope(_) => Self::Tension,
+            JointKind::Curve(curve) if curve.follow => Self::ForceAndTorque,
+            JointKind::Curve(_) => Self::Force,
         }
     }
 

@@ -47,6 +47,7 @@ JOINT_TYPES = [
     "cam",
     "coupling",
     "rope",
+    "curve",
 ]
 
 WORDS = {

@@ -143,7 +143,7 @@ def expected_of_coupling(name, table, file):
 
 REACTIONS = {
     **dict.fromkeys(
-        ["revolute", "slot", "link", "revolute_translational", "knife", "roller"], "fx fy"
+        ["revolute", "slot", "link", "revolute_translational", "knife", "roller", "curve"], "fx fy"
     ),
     **dict.fromkeys(
         ["translational", "weld", "flat", "rack_and_pinion", "rolling"], "fx fy torque"

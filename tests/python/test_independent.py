@@ -65,6 +65,8 @@ OTHER_JOINTS = """
     plate = { markers = { R = [0.01, 0.02], Q = [0.05, 0] }, estimate = [0.24, 0, 0.3] }
     lever = { markers = { C = [0, 0], K = [0.04, 0], L = [0, 0, "tilt"] }, estimate = [0.1, 0.15, -1] }
     rider = { markers = { M = [0.01, 0] }, estimate = [0.14, 0.1, 0] }
+    carriage = { markers = { M = [0, 0.01] }, estimate = [0.15, 0.1, -1] }
+    bead = { markers = { B = [0, 0] }, estimate = [0.27, 0.06, 0] }
     block = { markers = { P = [0, 0], S = [0.02, 0.03] }, estimate = [0.4, 0.02, 0] }
     [joints]
     A = { type = "revolute", markers = ["ground.A", "crank.O"] }
@@ -73,6 +75,8 @@ OTHER_JOINTS = """
     R = { type = "weld", markers = ["wheel.R", "plate.R"] }
     Q = { type = "revolute_translational", markers = ["lever.L", "plate.Q"], offset = "offset" }
     on = { type = "translational", markers = ["ground.D", "block.P"] }
+    carriage_on = { type = "curve", markers = ["lever.L", "carriage.M"], x = "s", y = "offset + gap*cos(s/base)", from = -0.2, to = "base", offset = "offset", follow = true }
+    ring = { type = "curve", markers = ["plate.R", "bead.B"], points = { table = [[30, 0], [5, 40], [-30, 5], [0, -20]], scale = ["mm", "mm"] }, closed = true }
     [joints.rope]
     type = "rope"
     markers = ["lever.K", "ground.E", { marker = "block.S", radius = "second/4", side = "right" },
@@ -87,6 +91,9 @@ OTHER_JOINTS = """
     [constraints]
     tilted = { coordinate = "angle", markers = ["lever.L", "rider.M"], value = "2*tilt" }
     ahead = { coordinate = "x", markers = ["plate.Q", "rider.M"], axes = "crank.O", value = "gap" }
+    along = { coordinate = "distance", markers = ["lever.C", "carriage.M"], value = "5*gap" }
+    upright = { coordinate = "angle", markers = ["ground.A", "bead.B"], value = 0 }
+    beside = { coordinate = "x", markers = ["ground.A", "bead.B"], value = "1.3*base" }
     away = { coordinate = "distance", markers = ["plate.Q", "rider.M"], value = "3*gap" }
     [drivers]
     turn = { coordinate = "angle", markers = ["ground.A", "crank.O"], start = 0 }

@@ -12,6 +12,7 @@ mod assembly;
 mod cam;
 mod closed_form;
 mod coupling;
+mod curve;
 mod forces;
 mod free;
 mod integrator;

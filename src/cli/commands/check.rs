@@ -248,7 +248,7 @@ fn contacts_text(system: &System) -> String {
         .collect();
     match joints[..] {
         [] => String::new(),
-        _ => format!(", the contact's angle of {}", joints.join(", ")),
+        _ => format!(", the contact's place of {}", joints.join(", ")),
     }
 }
 

@@ -114,6 +114,7 @@ fn points_of(joint: &Joint, anchor: impl Fn(MarkerId) -> Anchor) -> Vec<Vec<Anch
         JointKind::Translational | JointKind::Slot | JointKind::RevoluteTranslational { .. } => {
             vec![vec![to]]
         }
+        JointKind::Curve(_) => vec![vec![to]],
         JointKind::Link { .. } => vec![vec![from], vec![to]],
         JointKind::Rope(rope) => {
             let points = rope.points.iter();

@@ -140,6 +140,7 @@ symbols! { composer, ends:
     cam: Cam, JointKind::Cam { follower, profile } =>
         cam::compose(composer, ends, follower, profile);
     tie: Tie, JointKind::Coupling(equation) => tie::compose(composer, equation);
+    curve: CurveLine, JointKind::Curve(curve) => curve::compose(composer, ends, curve);
     rope: Rope, JointKind::Rope(rope) => rope::compose(composer, rope);
     knife: Knife;
     roller: Roller;

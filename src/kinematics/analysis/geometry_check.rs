@@ -1,4 +1,5 @@
-//! Checks the geometry of joints: the distances of wheels, the hollows of cams, the arcs of ropes.
+//! Checks the geometry of joints: the distances of wheels, the hollows of cams, the ends of
+//! curves, the arcs of ropes.
 //!
 //! The equations of these joints hold all the same; a warning tells that the drawing does not fit
 //! them.
@@ -67,6 +68,11 @@ pub enum GeometryWarningKind {
         /// First and last polar angle of each part that is not convex \[rad\].
         ranges: Vec<[f64; 2]>,
     },
+    /// A point on an open curve is beyond its ends.
+    BeyondEnd {
+        /// Part of the curve that is before the point.
+        part: f64,
+    },
     /// A rope does not touch its pulley.
     OffPulley {
         /// Marker at the pulley's centre, with its body.
@@ -121,6 +127,10 @@ impl fmt::Display for GeometryWarning {
                 "a flat face cannot follow the contour where it is hollow: {}",
                 degrees(ranges)
             ),
+            GeometryWarningKind::BeyondEnd { part } => write!(
+                f,
+                "the curve ends before its point: its parameter, from 0 to 1, is {part:.3}"
+            ),
             GeometryWarningKind::OffPulley { pulley, angle } => write!(
                 f,
                 "the rope does not touch its pulley at `{pulley}`: the arc on it is {:.1} deg; is \
@@ -157,8 +167,8 @@ const SMALLEST_PART: f64 = TAU / 16_384.0;
 /// Relative error of a distance that fits, and angle of an arc that is rounding \[rad\].
 const TOLERANCE: f64 = 1e-6;
 
-/// Returns the joints that do not fit their own numbers at the pose, in the order of declaration, ropes
-/// last.
+/// Returns the joints that do not fit their own numbers at the pose, in the order of declaration, curves
+/// and ropes last.
 pub(in crate::kinematics) fn geometry_warnings(
     compiled: &CompiledMechanism,
     state: &State,
@@ -197,6 +207,15 @@ pub(in crate::kinematics) fn geometry_warnings(
         })
         .collect();
     let mechanism = compiled.system.mechanism();
+    for (joint, curve) in compiled.system.curves() {
+        let part = curve.part_before(&state.at);
+        if let Some(part) = part.filter(|part| !(-TOLERANCE..=1.0 + TOLERANCE).contains(part)) {
+            warnings.push(GeometryWarning {
+                joint: mechanism.joints[joint].name.clone(),
+                kind: GeometryWarningKind::BeyondEnd { part },
+            });
+        }
+    }
     let off = arcs(&compiled.system, state).filter(|(.., angle)| *angle < -TOLERANCE);
     warnings.extend(off.map(|(joint, marker, angle)| GeometryWarning {
         joint: mechanism.joints[joint].name.clone(),

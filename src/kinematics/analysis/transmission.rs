@@ -18,7 +18,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::kinematics::constraint::configuration::{Configuration, perp};
+use crate::kinematics::constraint::configuration::{Configuration, MarkerPose, perp};
 use crate::kinematics::constraint::{Axis, Gradient, Relation, point_velocity};
 use crate::kinematics::linear::{dot, nan_or_larger, subtract};
 use crate::kinematics::origin::Origin;
@@ -40,6 +40,8 @@ enum Passage {
     Bar(usize, [MarkerId; 2]),
     /// A line of action that passes through a marker or, on a flat face, beside it.
     Line(usize, MarkerId),
+    /// A point of the second marker's body on a curve of the first one's, by its two rows.
+    Curve([usize; 2], [MarkerId; 2]),
     /// A rope, by its row; its pulls on each body together have a line of action.
     Rope(usize),
 }
@@ -120,8 +122,15 @@ fn passage(system: &System, row: usize) -> Option<Passage> {
                 return None;
             };
             let joint = &system.mechanism().joints[joint];
-            if matches!(joint.kind, JointKind::Rope(_)) {
-                return Some(Passage::Rope(row));
+            match joint.kind {
+                JointKind::Rope(_) => return Some(Passage::Rope(row)),
+                JointKind::Curve(_) => {
+                    let before = row.checked_sub(1).map(|before| equations[before].origin);
+                    let is_first = before != Some(equation.origin);
+                    let markers = [joint.from, joint.to];
+                    return is_first.then_some(Passage::Curve([row, row + 1], markers));
+                }
+                _ => {}
             }
             // The last row of a cam holds the distance of the two parts.
             let next = equations.get(row + 1).map(|next| next.origin);
@@ -211,14 +220,13 @@ impl<'a> Response<'a> {
         match *passage {
             Passage::Point(rows, markers) => {
                 let poses = markers.map(|marker| self.at.marker(marker));
-                let mut speeds = [Matrix2::zeros(); 2];
-                for (axis, row) in rows.into_iter().enumerate() {
-                    let q_dot = self.open(row);
-                    for (speed, &pose) in speeds.iter_mut().zip(&poses) {
-                        speed.set_column(axis, &point_velocity(pose, q_dot));
-                    }
-                }
-                largest_of(&speeds)
+                self.fastest_of(rows, poses)
+            }
+            Passage::Curve(rows, markers) => {
+                let [mut from, to] = markers.map(|marker| self.at.marker(marker));
+                // The point of the first body that is at the contact.
+                from.arm += to.point - from.point;
+                self.fastest_of(rows, [from, to])
             }
             Passage::Bar(row, markers) => {
                 let [from, to] = markers.map(|marker| self.at.marker(marker));
@@ -248,6 +256,18 @@ impl<'a> Response<'a> {
                 })
             }
         }
+    }
+
+    /// Returns the largest speed of two points for unit speeds of the gap of two rows in any direction.
+    fn fastest_of(&mut self, rows: [usize; 2], points: [MarkerPose; 2]) -> f64 {
+        let mut speeds = [Matrix2::zeros(); 2];
+        for (axis, row) in rows.into_iter().enumerate() {
+            let q_dot = self.open(row);
+            for (speed, &pose) in speeds.iter_mut().zip(&points) {
+                speed.set_column(axis, &point_velocity(pose, q_dot));
+            }
+        }
+        largest_of(&speeds)
     }
 
     /// Returns the largest speed of the feet, on the lines of action of the forces that a row exerts

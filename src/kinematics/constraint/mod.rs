@@ -20,6 +20,7 @@ mod cam;
 mod coincidence;
 pub(super) mod configuration;
 mod coupling;
+mod curve;
 mod definition;
 mod distance;
 mod gradient;
@@ -37,6 +38,7 @@ pub use angle::Angle;
 pub use cam::{Contour, FlatContact, FlatFace, KnifeEdge, Roller, RollerContact};
 pub use coincidence::Coincidence;
 pub use coupling::{CoupledExpression, CoupledFunction, Coupling};
+pub use curve::{AlongCurve, CurveContact, CurvePath, FormulaPath, OnCurve};
 pub(super) use definition::partial;
 pub use definition::{
     Along, Axis, Constraint, Dimension, Formula, Incidence, JointUnknown, TurnEffect,

@@ -12,7 +12,7 @@ use super::configuration::{
 };
 use crate::mechanism::{
     BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, MotionInForce, MovingProfile,
-    Number, ProfileAlong, Taylor,
+    Number, PointPath, ProfileAlong, Taylor,
 };
 
 /// A quantity with its first two derivatives in time, each with its change along a direction.
@@ -32,6 +32,9 @@ pub trait Moving: Number {
 
     /// Returns a law at a moving argument. Derivatives that do not exist are not finite.
     fn law(curves: Self::Curves<'_>, law: LawId, argument: Self) -> Self;
+
+    /// Returns x and y of a path at a moving place, and their derivatives by the place.
+    fn on_points(path: &PointPath, place: Self) -> [[Self; 2]; 2];
 }
 
 /// The profiles of all cams and the laws of all couplings along a direction.
@@ -52,6 +55,24 @@ impl Moving for Varied {
 
     fn law(curves: &CurvesAlong, law: LawId, argument: Self) -> Self {
         curves.laws[law.0].evaluate(argument)
+    }
+
+    fn on_points(path: &PointPath, place: Self) -> [[Self; 2]; 2] {
+        let at = path.at(place.value.value);
+        let along = place.value.first();
+        // Cubics have no further derivatives.
+        let jet = |c: Jet3| {
+            let [first, second, third] = c.derivatives;
+            Jet3::new(
+                Dual::new(c.value, [first * along]),
+                [
+                    Dual::new(first, [second * along]),
+                    Dual::new(second, [third * along]),
+                    Dual::constant(third),
+                ],
+            )
+        };
+        on_path(at.map(jet), place)
     }
 }
 
@@ -93,6 +114,15 @@ impl Moving for Enclosed {
         }
         of_contour(radius, theta)
     }
+
+    fn on_points(path: &PointPath, place: Self) -> [[Self; 2]; 2] {
+        let mut found = on_path(path.over(place.value), place);
+        // The third derivative jumps at points.
+        for component in found.as_flattened_mut() {
+            component.derivatives[2] = Interval::unknown();
+        }
+        found
+    }
 }
 
 /// Bounds eight times the distance of a quantity along a sub-step from its chord: by its second
@@ -106,6 +136,22 @@ pub(in crate::kinematics) fn bend(quantity: &Enclosed) -> f64 {
     } else {
         8.0 * width(quantity.value)
     }
+}
+
+/// Returns the components of a path and their derivatives by a moving place, from those with three
+/// derivatives by it.
+fn on_path<S: Number, const N: usize>(
+    at: [Jet3<S>; 2],
+    place: Taylor<S, N>,
+) -> [[Taylor<S, N>; 2]; 2] {
+    let [x, y] = at.map(|c| {
+        let [first, second, third] = c.derivatives;
+        [
+            place.chain(c.value, |_| [first, second, third]),
+            place.chain(first, |_| [second, third, S::constant(0.0)]),
+        ]
+    });
+    [[x[0], y[0]], [x[1], y[1]]]
 }
 
 /// Returns R(θ) and R′(θ) for a moving θ, from R and its derivatives with respect to θ.

@@ -11,8 +11,8 @@ use crate::kinematics::{
     ProfileId,
 };
 use crate::mechanism::{
-    BodyId, CoordinateEquation, Dual, Expression, Interval, JointKind, MarkerId, Mechanism, Motion,
-    MotionInForce, Number, ProfileInForce, RackSide, Source,
+    BodyId, CoordinateEquation, Curve, CurveShape, Dual, Expression, Interval, JointKind, MarkerId,
+    Mechanism, Motion, MotionInForce, Number, PointPath, ProfileInForce, RackSide, Source,
 };
 
 /// Three bodies and ground with markers in general position, one of them at its body's origin,
@@ -34,6 +34,11 @@ type = "cam"
 markers = ["a.A", "b.B"]
 follower = "flat"
 profile = "0.4 + 0.05*cos(theta) + 0.02*sin(3*theta)"
+[joints.way]
+type = "curve"
+markers = ["a.A", "b.B"]
+x = "0.4*s + 0.1*cos(2*s)"
+y = "0.2*s - 0.3*sin(s)"
 [joints]
 line = { type = "coupling", equation = "2*turn - far = 0.5*near + 1" }
 angles = { type = "coupling", equation = "2*turn = 3*lean" }
@@ -135,6 +140,7 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
         samples.push(Box::new(FlatContact { contour, follower }));
         samples.push(Box::new(FlatFace { contour, follower }));
     }
+    samples_of_curves(mechanism, &id, &mut samples);
     for joint in &mechanism.joints {
         if let JointKind::Coupling(equation) = &joint.kind {
             samples.push(Box::new(coupling(equation)));
@@ -186,6 +192,66 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
         samples.push(Box::new(RopeLength::new(stations, parts.collect())));
     }
     samples
+}
+
+/// Adds points on curves: by a formula, closed and with an offset, and through points.
+fn samples_of_curves(
+    mechanism: &Mechanism,
+    id: &impl Fn(&str) -> MarkerId,
+    samples: &mut Vec<Box<dyn Constraint>>,
+) {
+    let JointKind::Curve(Curve {
+        shape: CurveShape::Formula { x, y, .. },
+        ..
+    }) = &mechanism.joints[1].kind
+    else {
+        panic!("the sample has a curve");
+    };
+    let (place, straight) = (
+        JointUnknownId(0),
+        PointPath::new(&[[0.1, 0.2], [0.5, -0.3]], false),
+    );
+    for (from, to) in [("a.A", "b.B"), ("ground.G", "b.B"), ("c.C", "ground.H")] {
+        let (from, to) = (id(from), id(to));
+        let formula = |offset, is_closed| {
+            let formula = FormulaPath {
+                components: [x.clone(), y.clone()],
+                ends: [CoefficientId(0), CoefficientId(1)],
+                parameters: Vec::new(),
+            };
+            CurvePath::of_formula(formula, offset, is_closed)
+        };
+        let straight = straight.clone().expect("two points make a path");
+        for (path, is_bent) in [
+            (formula(None, false), true),
+            (formula(Some(CoefficientId(0)), true), true),
+            (
+                CurvePath::through_points(straight, Some(CoefficientId(1))),
+                false,
+            ),
+        ] {
+            for axis in [Axis::X, Axis::Y] {
+                samples.push(Box::new(OnCurve {
+                    coordinate: Projection {
+                        from,
+                        to,
+                        axes: from,
+                        axis,
+                    },
+                    path: path.clone(),
+                    place,
+                }));
+            }
+            if is_bent {
+                samples.push(Box::new(AlongCurve {
+                    from,
+                    to,
+                    path,
+                    place,
+                }));
+            }
+        }
+    }
 }
 
 /// Returns the relation of an equation without parameters. One of linear terms is one with the

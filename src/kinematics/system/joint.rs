@@ -5,14 +5,15 @@ use crate::kinematics::constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, CouplingLaw, JointUnknownId, LawId, ProfileId,
 };
 use crate::kinematics::constraint::{
-    Axis, Coincidence, Constraint, Contour, CoordinateRelation, CoupledExpression, CoupledFunction,
-    Coupling, Dimension, FlatContact, FlatFace, JointUnknown, KnifeEdge, RackAndPinion, Roller,
+    AlongCurve, Axis, Coincidence, Constraint, Contour, CoordinateRelation, CoupledExpression,
+    CoupledFunction, Coupling, CurveContact, CurvePath, Dimension, FlatContact, FlatFace,
+    FormulaPath, JointUnknown, KnifeEdge, OnCurve, Projection, RackAndPinion, Roller,
     RollerContact, RopeLength, Station, WheelPair, of_coordinate,
 };
 use crate::mechanism::{
-    BodyId, CamFollower, Coordinate, CoordinateEquation, CoordinateKind, Expression, Joint,
-    JointKind, LinearForm, Mechanism, Motion, MotionInForce, ParameterId, Phase, Profile,
-    ProfileInForce, RackSide, Rope, WheelSizes,
+    BodyId, CamFollower, Coordinate, CoordinateEquation, CoordinateKind, Curve, CurveShape,
+    Expression, Joint, JointKind, LinearForm, Mechanism, Motion, MotionInForce, ParameterId, Phase,
+    Profile, ProfileInForce, RackSide, Rope, WheelSizes,
 };
 
 /// Coefficients, profiles, laws and unknowns of joints.
@@ -210,6 +211,7 @@ pub(super) fn relations(
             }
         }
         JointKind::Rope(rope) => vec![(run(joint, rope, parts), rope.length.clone())],
+        JointKind::Curve(curve) => lie(origin, joint, curve, parts),
     }
 }
 
@@ -220,6 +222,72 @@ fn held_at(phase: &Phase) -> Expression {
         Phase::At(value) => value.clone(),
         Phase::Drawn => Expression::constant(0.0),
     }
+}
+
+/// Returns the relations of a point on a curve.
+fn lie(
+    origin: Origin,
+    joint: &Joint,
+    curve: &Curve,
+    parts: &mut JointParts,
+) -> Vec<(Box<dyn Constraint>, Expression)> {
+    let (from, to) = (joint.from, joint.to);
+    let what = format!("a number of joint `{}`", joint.name);
+    let offset = curve.offset.as_ref();
+    let offset = offset.map(|offset| parts.coefficient(offset, what.clone()));
+    let path = match &curve.shape {
+        CurveShape::Points(path) => CurvePath::through_points(path.clone(), offset),
+        CurveShape::Formula { x, y, ends } => {
+            let mut used: Vec<ParameterId> = x.parameters().chain(y.parameters()).collect();
+            used.sort_unstable();
+            used.dedup();
+            let formula = FormulaPath {
+                components: [x.clone(), y.clone()],
+                ends: ends
+                    .each_ref()
+                    .map(|end| parts.coefficient(end, what.clone())),
+                parameters: (used.into_iter())
+                    .map(|p| {
+                        (
+                            p,
+                            parts.coefficient(&Expression::parameter(p), what.clone()),
+                        )
+                    })
+                    .collect(),
+            };
+            CurvePath::of_formula(formula, offset, curve.closed)
+        }
+    };
+    let place = parts.next_unknown();
+    let contact = CurveContact {
+        from,
+        to,
+        path: path.clone(),
+    };
+    parts.unknown(origin, Box::new(contact));
+    let mut rows: Vec<Box<dyn Constraint>> = Vec::new();
+    for axis in [Axis::X, Axis::Y] {
+        rows.push(Box::new(OnCurve {
+            coordinate: Projection {
+                from,
+                to,
+                axes: from,
+                axis,
+            },
+            path: path.clone(),
+            place,
+        }));
+    }
+    if curve.follow {
+        rows.push(Box::new(AlongCurve {
+            from,
+            to,
+            path,
+            place,
+        }));
+    }
+    let zero = || Expression::constant(0.0);
+    rows.into_iter().map(|row| (row, zero())).collect()
 }
 
 /// Returns the relation of a rope.

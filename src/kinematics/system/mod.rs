@@ -18,7 +18,7 @@ pub(super) use linearise::{RowValue, Values};
 use super::constraint::configuration::{Configuration, on_nearest_turn};
 use super::constraint::moving_configuration::VariedConfiguration;
 use crate::kinematics::constraint::{
-    self, Constraint, Dimension, Incidence, RopeLength, TurnEffect,
+    self, Constraint, Dimension, Incidence, OnCurve, RopeLength, TurnEffect,
 };
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
@@ -60,6 +60,8 @@ pub struct System {
     driver_rows: Vec<usize>,
     /// The joints that are ropes, with their rows.
     ropes: Vec<(usize, usize)>,
+    /// The joints that are curves, with their first rows.
+    curves: Vec<(usize, usize)>,
     joint_parts: JointParts,
     /// Size of the part that each body belongs to, as a part of the mechanism's size.
     part_sizes: Vec<f64>,
@@ -87,12 +89,14 @@ impl System {
     pub fn new(mechanism: Arc<Mechanism>) -> Self {
         let mut equations = Vec::new();
         let mut joint_parts = JointParts::default();
-        let mut ropes = Vec::new();
+        let (mut ropes, mut curves) = (Vec::new(), Vec::new());
         for (index, joint) in mechanism.joints.iter().enumerate() {
             let origin = Origin::Joint(index);
             joint_parts.parameters.clear();
-            if matches!(joint.kind, JointKind::Rope(_)) {
-                ropes.push((index, equations.len()));
+            match joint.kind {
+                JointKind::Rope(_) => ropes.push((index, equations.len())),
+                JointKind::Curve(_) => curves.push((index, equations.len())),
+                _ => {}
             }
             for (constraint, target) in
                 joint::relations(&mechanism, origin, joint, &mut joint_parts)
@@ -139,6 +143,7 @@ impl System {
             equations,
             driver_rows,
             ropes,
+            curves,
             joint_parts,
             part_sizes,
         };
@@ -178,6 +183,14 @@ impl System {
     /// Returns the joints that are ropes, with their relations.
     pub(in crate::kinematics) fn ropes(&self) -> impl Iterator<Item = (usize, &RopeLength)> {
         self.ropes.iter().filter_map(|&(joint, row)| {
+            let constraint: &dyn Any = &*self.equations[row].constraint;
+            Some((joint, constraint.downcast_ref()?))
+        })
+    }
+
+    /// Returns the joints that are curves, with the relation of their x.
+    pub(in crate::kinematics) fn curves(&self) -> impl Iterator<Item = (usize, &OnCurve)> {
+        self.curves.iter().filter_map(|&(joint, row)| {
             let constraint: &dyn Any = &*self.equations[row].constraint;
             Some((joint, constraint.downcast_ref()?))
         })

@@ -45,6 +45,8 @@ pub enum Variable {
     Time,
     /// Polar angle \[rad\], `theta` in a cam's profile.
     PolarAngle,
+    /// Parameter of a curve, `s` in its x and y.
+    CurveParameter,
     /// Coordinate along which a force acts \[m or rad\], `position` there.
     Position,
     /// Its rate \[m/s or rad/s\], `velocity` there.
@@ -66,6 +68,7 @@ impl Variable {
         match self {
             Self::Time => "t",
             Self::PolarAngle => "theta",
+            Self::CurveParameter => "s",
             Self::Position => "position",
             Self::Velocity => "velocity",
             Self::Signal(..) => "a signal",

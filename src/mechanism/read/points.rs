@@ -14,7 +14,7 @@ use super::number::{Limit, NUMBER, Number, Quantity};
 use super::table::table;
 
 table! {
-    /// Points of a motion or of a contour.
+    /// Points of a motion, of a contour or of a curve.
     #[one_of(
         table,
         file,
@@ -90,6 +90,44 @@ impl<'a> Context<'a> {
     /// Reads the points under `table`, or of the CSV file under `file`, whose abscissas rise with
     /// the file's parameters.
     pub(super) fn points(&mut self, keys: PointKeys<'a>) -> Option<PointTable> {
+        let table = self.any_points(keys)?;
+        let falls = |pair: &[[f64; 2]]| pair[0][0] >= pair[1][0];
+        if let Some(at) = table.values.windows(2).position(falls) {
+            let [before, x] = shown_apart(table.values[at][0], table.values[at + 1][0]);
+            let line = table.line(at + 1);
+            let message =
+                format!("the first column of a table must rise; {line}{x} comes after {before}");
+            self.error(code::BAD_TABLE, table.span(at + 1), message);
+            return None;
+        }
+        Some(table)
+    }
+
+    /// Reads points of the plane that no parameter moves.
+    pub(super) fn fixed_points(&mut self, keys: PointKeys<'a>) -> Option<Vec<[f64; 2]>> {
+        let place = keys.owner.place.clone();
+        let points = self.any_points(keys)?;
+        if points.table.parameters().next().is_some() {
+            let message = "the points of a curve are numbers, without parameters";
+            self.error(code::BAD_TABLE, place, message)
+                .suggest("`x` and `y` may use parameters: expressions in `s`");
+            return None;
+        }
+        Some(points.values)
+    }
+
+    /// Reads points of the plane from the CSV file called `name`.
+    pub(super) fn points_called(&mut self, name: &str, span: &Span) -> Option<Vec<[f64; 2]>> {
+        let points = self.points_of_file(name, span, None)?;
+        let number = |e: Expression| e.literal();
+        let points = points.into_iter();
+        points
+            .map(|(.., [x, y])| Some([number(x)?, number(y)?]))
+            .collect()
+    }
+
+    /// Reads the points under `table`, or of the CSV file under `file`, in any order.
+    fn any_points(&mut self, keys: PointKeys<'a>) -> Option<PointTable> {
         if let (Some(span), None) = (keys.columns.key.clone(), &keys.file.key) {
             let message = format!("{} has `columns`, but no `file`", keys.owner.subject);
             self.error(code::UNKNOWN_KEY, span, message)
@@ -123,21 +161,11 @@ impl<'a> Context<'a> {
             table.write(&|id| self.known_value(id), &mut x, &mut y);
             values = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
         }
-        let table = PointTable {
+        Some(PointTable {
             table,
             places,
             values,
-        };
-        let falls = |pair: &[[f64; 2]]| pair[0][0] >= pair[1][0];
-        if let Some(at) = table.values.windows(2).position(falls) {
-            let [before, x] = shown_apart(table.values[at][0], table.values[at + 1][0]);
-            let line = table.line(at + 1);
-            let message =
-                format!("the first column of a table must rise; {line}{x} comes after {before}");
-            self.error(code::BAD_TABLE, table.span(at + 1), message);
-            return None;
-        }
-        Some(table)
+        })
     }
 
     fn points_of_file(

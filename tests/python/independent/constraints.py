@@ -29,6 +29,8 @@ class Entry(NamedTuple):
     """Polar angle of the contact, an unknown of its own."""
     formula: Callable[[str], Any]
     """Evaluates an expression over parameters, coordinates by their names, and the own `law`."""
+    curve: Callable[[Any], Any] | None = None
+    """Point of a curve at a place from 0 to 1."""
     way: list = []
     """Points and centres over which a rope runs, with the radii there."""
 
@@ -160,6 +162,18 @@ def flat(at: Entry):
     return [face.turned() @ tangent(at), face.turned() @ to_contact]
 
 
+def curve(at: Entry):
+    """The place on the curve is an unknown of its own, from 0 to 1 on closed curves too."""
+    on = at.curve(at.contact)
+    along = Vector(*(mp.diff(lambda s: at.curve(s)[axis], at.contact) for axis in (0, 1)))
+    along *= 1 / along.length()
+    on += along.turned() * at.number(at.keys.get("offset", 0))
+    rows = [*(at.i.local(at.j.point) - on)]
+    if at.keys.get("follow"):
+        rows.append(along.turned() @ at.j.axis.in_axes(at.i.axis))
+    return rows
+
+
 def rope(at: Entry):
     """The ends of a leg lie on the two circles, in the direction in which both have one normal."""
     parts = [at.number(part) for part in at.keys.get("parts", [1] * (len(at.way) - 1))]
@@ -180,7 +194,10 @@ def rope(at: Entry):
 
 
 def gap(at: Entry):
-    """Returns the distance from the contact on the contour to the follower's face or point."""
+    """Returns the distance from the contact on the contour to the follower's face or point, or from a
+    place on a curve to the point."""
+    if at.curve:
+        return (at.i.local(at.j.point) - at.curve(at.contact)).length()
     to_contact = contour(at) - at.i.local(at.j.point)
     if at.keys["follower"] == "flat":
         return abs(to_contact.in_axes(at.j.axis.in_axes(at.i.axis)).y)
@@ -193,7 +210,7 @@ JOINTS = {
     function.__name__: function
     for function in (
         revolute, translational, slot, link, revolute_translational, weld,
-        gear, belt, rack_and_pinion, rolling, coupling, cam, rope,
+        gear, belt, rack_and_pinion, rolling, coupling, cam, rope, curve,
     )
 }  # fmt: skip
 """Residuals of each type of joint."""

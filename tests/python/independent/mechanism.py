@@ -51,6 +51,11 @@ class Mechanism:
             for place, joint in enumerate(self.joints)
             if joint["type"] == "coupling" and "law" in joint
         }
+        self.curves = {
+            place: tables.curve(joint, self.names, folder)
+            for place, joint in enumerate(self.joints)
+            if joint["type"] == "curve"
+        }
         self.motions = {
             name: tables.motion(driver["motion"], self.names, folder)
             for name, driver in moving(file).items()
@@ -74,15 +79,16 @@ class Mechanism:
 
 
 class Placed:
-    """Mechanism in a pose: x, y, phi of each body in turn, then the polar angles of contacts."""
+    """Mechanism in a pose: x, y, phi of each body in turn, then the places of contacts."""
 
     def __init__(self, mechanism: Mechanism, q):
         self.mechanism = mechanism
         self.bodies = {"ground": GROUND}
         for place, body in enumerate(mechanism.bodies):
             self.bodies[body] = frame(*q[3 * place : 3 * place + 3])
-        # A contact's angle that is not known yet is left out.
-        self.contacts = dict(zip(mechanism.profiles, q[3 * len(mechanism.bodies) :]))
+        # A contact's place that is not known yet is left out.
+        contacts = sorted([*mechanism.profiles, *mechanism.curves])
+        self.contacts = dict(zip(contacts, q[3 * len(mechanism.bodies) :]))
 
     def frame(self, marker: str) -> Frame:
         """Returns where a marker stands."""
@@ -103,6 +109,7 @@ class Placed:
             self.mechanism.profiles.get(place),
             self.contacts.get(place),
             lambda text: evaluate(text.strip(), self.names(place)),
+            self.mechanism.curves.get(place),
             [self.over(at) for at in keys["markers"]] if keys.get("type") == "rope" else [],
         )
 

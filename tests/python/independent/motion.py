@@ -107,11 +107,12 @@ def doubles(values):
 
 
 def contact_angles(mechanism: Mechanism, q) -> list:
-    """Returns the polar angle of each contact, to a degree: the contour is nearest there."""
+    """Returns the polar angle of each contact, to a degree, or the place on a curve: the contour is
+    nearest there."""
     placed = mechanism.place(q)
     found = []
-    for place in mechanism.profiles:
+    for place in sorted([*mechanism.profiles, *mechanism.curves]):
         entry = placed.entry(mechanism.joints[place], place)
-        turn = mp.linspace(-mp.pi, mp.pi, 361)
+        turn = mp.linspace(-mp.pi, mp.pi, 361) if place in mechanism.profiles else mp.linspace(0, 1, 361)
         found.append(min(turn, key=lambda angle: gap(entry._replace(contact=angle))))
     return found

@@ -7,6 +7,7 @@ from bisect import bisect_right
 
 from .digits import mp
 from .expressions import evaluate
+from .frames import Vector
 
 
 def polynomial_345(x):
@@ -38,8 +39,9 @@ def by_law(points, law):
     return piece
 
 
-def spline(points):
-    """Returns the periodic cubic spline, from the equations of its second derivatives."""
+def spline(points, natural=False):
+    """Returns the periodic cubic spline, or the natural one, from the equations of its second
+    derivatives."""
     count = len(points) - 1
     width = [points[k + 1][0] - points[k][0] for k in range(count)]
     slope = [(points[k + 1][1] - points[k][1]) / width[k] for k in range(count)]
@@ -49,8 +51,12 @@ def spline(points):
         matrix[k, k] += 2 * (width[k - 1] + width[k])
         matrix[k, (k + 1) % count] += width[k]
         right[k] = 6 * (slope[k] - slope[k - 1])
-    second = list(mp.lu_solve(matrix, right))
-    second.append(second[0])
+    if natural:
+        inner = mp.lu_solve(matrix[1:, 1:], right[1:]) if count > 1 else []
+        second = [mp.zero, *inner, mp.zero]
+    else:
+        second = list(mp.lu_solve(matrix, right))
+        second.append(second[0])
 
     def piece(place, x):
         h, a, b = width[place], points[place + 1][0] - x, x - points[place][0]
@@ -95,6 +101,36 @@ def motion(entry, names, folder, variable="t"):
     if entry.get("ends") != "periodic":
         raise NotImplementedError(f"ends = {entry.get('ends')!r}")
     return repeated(read_points(entry, names, folder), entry.get("law", "spline"))
+
+
+def curve(joint, names, folder):
+    """Returns the point of a curve as a function of a place, from 0 at its first to 1 at its last point."""
+    if "x" in joint:
+        x, y = (names.function(str(joint[axis]), "s") for axis in "xy")
+        begin, end = evaluate(joint.get("from", 0), names), evaluate(joint.get("to", 1), names)
+        return lambda place: Vector(*(c(begin + (end - begin) * place) for c in (x, y)))
+    points = joint["points"]
+    points = read_points({"file": points} if isinstance(points, str) else points, names, folder)
+    is_closed = joint.get("closed", False)
+    if is_closed and points[0] != points[-1]:
+        points.append(points[0])
+    chords = [Vector(*b) - Vector(*a) for a, b in zip(points, points[1:])]
+    knots = [mp.zero]
+    for chord in chords:
+        knots.append(knots[-1] + chord.length())
+    knots = [knot / knots[-1] for knot in knots]
+    pieces = [
+        spline([[knot, point[axis]] for knot, point in zip(knots, points)], not is_closed)
+        for axis in (0, 1)
+    ]
+
+    def on(place):
+        if is_closed:
+            place -= mp.floor(place.real)
+        piece = bisect_right(knots[1:-1], place.real)
+        return Vector(*(component(piece, place) for component in pieces))
+
+    return on
 
 
 def profile(entry, names, folder):

@@ -443,7 +443,8 @@ fn ratio_on_ground(kind: &JointKind, number: &impl Fn(&Expression) -> f64) -> Op
     Some(if same_sense { first } else { -first } / second)
 }
 
-/// Multiplies all lengths, masses and times; nothing for cams and couplings, which have formulas.
+/// Multiplies all lengths, masses and times; nothing for cams, couplings and curves, which are
+/// formulas.
 fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
     let parameters = mechanism.default_parameters();
     let times = |expression: &mut Expression, factor: f64| {
@@ -469,7 +470,7 @@ fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
             | JointKind::RackAndPinion { radius: own, .. }
             | JointKind::Rolling { radius: own, .. } => times(own, length),
             // Formulas.
-            JointKind::Cam { .. } | JointKind::Coupling(_) => return None,
+            JointKind::Cam { .. } | JointKind::Coupling(_) | JointKind::Curve(_) => return None,
             // A ratio.
             JointKind::Gear { .. } | JointKind::Belt { .. } => {}
             JointKind::Rope(rope) => {

@@ -3,6 +3,7 @@
 mod belt;
 mod cam;
 mod coupling;
+mod curve;
 mod gear;
 mod link;
 mod phase;
@@ -138,6 +139,7 @@ static JOINT_TYPES: &[&JointType] = &[
     &cam::TYPE,
     &coupling::TYPE,
     &rope::TYPE,
+    &curve::TYPE,
 ];
 
 const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT_TYPE, || {

@@ -1,0 +1,438 @@
+//! A point on a curve of another body.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use super::configuration::{CoefficientId, Configuration, JointUnknownId, MarkerPose, perp};
+use super::definition::{Axis, Constraint, Dimension, Formula, Incidence, JointUnknown};
+use super::gradient::Gradient;
+use super::moving_configuration::{Moving, VariedMechanism, dot, quarter_turn};
+use super::point::angular_velocity;
+use super::projection::Projection;
+use super::region::{Region, chord};
+use crate::mechanism::{
+    Expression, Interval, Jet, Jet3, MarkerId, Mechanism, Number, ParameterId, PointPath, Taylor,
+};
+
+/// Parts of a curve that a search for its nearest point begins with.
+const PARTS: u32 = 256;
+/// Most iterations of the search.
+const ITERATIONS: usize = 20;
+
+/// A curve in the frame of a marker, C(s), with s from 0 at its first to 1 at its last point, to a
+/// whole turn on a closed curve.
+///
+/// A joint unknown counts as an angle, which comes back after a turn: on closed curves s does. The
+/// length of a curve per unit of s makes its column about as large as those of angles.
+#[derive(Clone, Debug)]
+pub struct CurvePath {
+    shape: Shape,
+    /// Distance of the parallel curve to the left.
+    offset: Option<CoefficientId>,
+    /// Part of the curve per unit of s.
+    part: f64,
+    is_closed: bool,
+}
+
+/// The shape of a curve without its offset.
+#[derive(Clone, Debug)]
+enum Shape {
+    Points(Arc<PointPath>),
+    Formula(Arc<FormulaPath>),
+}
+
+/// Expressions of a curve.
+#[derive(Clone, Debug)]
+pub struct FormulaPath {
+    /// x and y as functions of a variable.
+    pub components: [Expression; 2],
+    /// The variable at both ends.
+    pub ends: [CoefficientId; 2],
+    /// The parameters in `components`, as coefficients.
+    pub parameters: Vec<(ParameterId, CoefficientId)>,
+}
+
+/// A number for which a curve gives derivatives: plain, or bounds.
+trait Base: Number {
+    fn on_points(path: &PointPath, s: Self) -> [Jet3<Self>; 2];
+}
+
+impl Base for f64 {
+    fn on_points(path: &PointPath, s: Self) -> [Jet3<Self>; 2] {
+        path.at(s)
+    }
+}
+
+impl Base for Interval {
+    fn on_points(path: &PointPath, s: Self) -> [Jet3<Self>; 2] {
+        path.over(s)
+    }
+}
+
+/// The place on a curve at one pose, with derivatives by s.
+struct Place<S> {
+    /// C on the axes of the curve's marker.
+    point: [Taylor<S, 2>; 2],
+    /// C′ of the curve without its offset.
+    along: [S; 2],
+    /// First and second derivative of its direction.
+    turn: [S; 2],
+}
+
+impl CurvePath {
+    /// Makes a spline through points.
+    pub fn through_points(path: PointPath, offset: Option<CoefficientId>) -> Self {
+        let is_closed = path.is_closed();
+        Self::new(Shape::Points(Arc::new(path)), offset, is_closed)
+    }
+
+    /// Makes a curve of expressions.
+    pub fn of_formula(
+        formula: FormulaPath,
+        offset: Option<CoefficientId>,
+        is_closed: bool,
+    ) -> Self {
+        Self::new(Shape::Formula(Arc::new(formula)), offset, is_closed)
+    }
+
+    fn new(shape: Shape, offset: Option<CoefficientId>, is_closed: bool) -> Self {
+        Self {
+            shape,
+            offset,
+            part: if is_closed { TAU.recip() } else { 1.0 },
+            is_closed,
+        }
+    }
+
+    fn part_before(&self, s: f64) -> Option<f64> {
+        (!self.is_closed).then_some(s * self.part)
+    }
+
+    /// Returns x and y of the curve without its offset.
+    fn jets<S: Base>(&self, coefficient: impl Fn(CoefficientId) -> f64, s: S) -> [Jet3<S>; 2] {
+        match &self.shape {
+            Shape::Points(path) => {
+                let part = self.part;
+                let jets = S::on_points(path, s * part);
+                jets.map(|c| {
+                    let [first, second, third] = c.derivatives;
+                    let scaled = [first * part, second * part.powi(2), third * part.powi(3)];
+                    Jet3::new(c.value, scaled)
+                })
+            }
+            Shape::Formula(formula) => {
+                let [first, last] = formula.ends.map(&coefficient);
+                let way = S::constant((last - first) * self.part);
+                let variable = Jet3::linear(S::constant(first) + way * s, way);
+                let parameter = |p| Jet3::constant(coefficient(formula.coefficient(p)));
+                let components = formula.components.each_ref();
+                components.map(|component| component.evaluate(&parameter, variable))
+            }
+        }
+    }
+
+    fn place<S: Base>(&self, coefficient: impl Fn(CoefficientId) -> f64, s: S) -> Place<S> {
+        let jets = self.jets(&coefficient, s);
+        let point = jets.map(|c| Taylor::<S, 2>::new(c.value, [c.first(), c.second()]));
+        let slope = jets.map(|c| Taylor::<S, 2>::new(c.first(), [c.second(), c.third()]));
+        let offset = self.offset.map(coefficient);
+        let offset = offset.map(|offset| Taylor::<S, 2>::constant(offset));
+        let along = jets.map(|c| Taylor::<S, 1>::new(c.first(), [c.second()]));
+        let bend = jets.map(|c| Taylor::<S, 1>::new(c.second(), [c.third()]));
+        let turn = dot(quarter_turn(along), bend) / dot(along, along);
+        Place {
+            point: beside(point, slope, offset),
+            along: jets.map(|c| c.first()),
+            turn: [turn.value, turn.first()],
+        }
+    }
+
+    /// Returns the curve at a place, and its slope without the offset, on the numbers of a moving
+    /// mechanism.
+    fn along<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>, s: N) -> [[N; 2]; 2] {
+        let s = s * self.part;
+        let [point, slope] = match &self.shape {
+            Shape::Points(path) => N::on_points(path, s),
+            Shape::Formula(formula) => {
+                type WithSlope<N> = Taylor<N, 1>;
+                let [first, last] = formula.ends.map(|end| at.coefficient(end));
+                let way = last - first;
+                let variable = WithSlope::linear(first + way * s, way);
+                let parameter = |p| WithSlope::fixed(at.coefficient(formula.coefficient(p)));
+                let components = formula.components.each_ref();
+                let [x, y] = components.map(|component| component.evaluate(&parameter, variable));
+                [[x.value, y.value], [x.first(), y.first()]]
+            }
+        };
+        let offset = self.offset.map(|offset| at.coefficient(offset));
+        [beside(point, slope, offset), slope]
+    }
+
+    /// Returns the curve with its offset at a place, with two derivatives.
+    fn point(&self, at: &Configuration, s: f64) -> [Jet; 2] {
+        self.place(|id| at.coefficient(id), s).point
+    }
+}
+
+impl FormulaPath {
+    fn coefficient(&self, parameter: ParameterId) -> CoefficientId {
+        let mut known = self.parameters.iter();
+        let found = known.find(|(id, _)| *id == parameter);
+        found.expect("all its parameters are coefficients").1
+    }
+}
+
+/// Returns the point at a distance to the left of a curve.
+fn beside<N: Number>(point: [N; 2], slope: [N; 2], offset: Option<N>) -> [N; 2] {
+    let Some(offset) = offset else {
+        return point;
+    };
+    let [x, y] = quarter_turn(slope);
+    let speed = x.hypot(y);
+    [point[0] + offset * x / speed, point[1] + offset * y / speed]
+}
+
+/// c = e · (P_j − P_i) − C(s) · e, with the x- or y-axis e of marker i.
+#[derive(Clone, Debug)]
+pub struct OnCurve {
+    /// The coordinate of marker j on the axes of marker i.
+    pub coordinate: Projection,
+    /// The curve.
+    pub path: CurvePath,
+    /// s.
+    pub place: JointUnknownId,
+}
+
+impl OnCurve {
+    /// Returns the part of an open curve that is before the point, from 0 to 1 unless the point is
+    /// beyond its ends; `None` for a closed curve, which has none.
+    pub fn part_before(&self, at: &Configuration) -> Option<f64> {
+        self.path.part_before(at.joint_unknown(self.place))
+    }
+
+    fn component(&self) -> usize {
+        match self.coordinate.axis {
+            Axis::X => 0,
+            Axis::Y => 1,
+        }
+    }
+}
+
+impl Formula for OnCurve {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
+        let [point, _] = self.path.along(at, at.joint_unknown(self.place));
+        self.coordinate.evaluate(at) - point[self.component()]
+    }
+}
+
+impl Constraint for OnCurve {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let point = self.path.point(at, at.joint_unknown(self.place));
+        self.coordinate.value(at) - point[self.component()].value
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
+        let point = self.path.point(at, at.joint_unknown(self.place))[self.component()];
+        row.add_joint_unknown(at.joint_unknown_column(self.place), -point.first());
+        self.coordinate.value_and_gradient(at, row) - point.value
+    }
+
+    /// Returns that of the coordinate − C″ · e ṡ².
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let point = self.path.point(at, at.joint_unknown(self.place))[self.component()];
+        let rate = q_dot[at.joint_unknown_column(self.place)];
+        self.coordinate.quadratic(at, q_dot) - point.second() * rate * rate
+    }
+
+    /// Bounds C″ over the part of the curve in the region.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let column = at.joint_unknown_column(self.place);
+        let slide = region.radius(column);
+        let range = around(at.joint_unknown(self.place), slide);
+        let place = self.path.place(|id| at.coefficient(id), range);
+        let second = place.point[self.component()].second();
+        if !second.is_finite() {
+            return None;
+        }
+        let second = second.magnitude();
+        row.add_joint_unknown(column, second * slide);
+        let bend = self.coordinate.bend(at, region, v, row)?;
+        Some(bend + second * v[column] * v[column])
+    }
+
+    fn has_contour(&self) -> bool {
+        true
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        self.coordinate.incidence(mechanism, incidence);
+        incidence.joint_unknown(mechanism, self.place);
+    }
+}
+
+/// c = sin β with the angle β from the curve's direction to the x-axis of marker j.
+#[derive(Clone, Debug)]
+pub struct AlongCurve {
+    /// Marker i, in whose frame the curve is.
+    pub from: MarkerId,
+    /// Marker j.
+    pub to: MarkerId,
+    /// The curve.
+    pub path: CurvePath,
+    /// s.
+    pub place: JointUnknownId,
+}
+
+impl AlongCurve {
+    /// Returns the markers, the cosine and the sine of β, and the derivatives of the curve's
+    /// direction.
+    fn turned(&self, at: &Configuration) -> ([MarkerPose; 2], [f64; 2], [f64; 2]) {
+        let place = self
+            .path
+            .place(|id| at.coefficient(id), at.joint_unknown(self.place));
+        let [i, j] = [self.from, self.to].map(|marker| at.marker(marker));
+        let along = place.along[0] * i.axis + place.along[1] * perp(i.axis);
+        let along = along / along.norm();
+        let turned = [along.dot(&j.axis), along.perp(&j.axis)];
+        ([i, j], turned, place.turn)
+    }
+}
+
+impl Formula for AlongCurve {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
+        let [_, slope] = self.path.along(at, at.joint_unknown(self.place));
+        let (x, axis) = (at.marker(self.from).axis, at.marker(self.to).axis);
+        let own = [dot(x, axis), dot(quarter_turn(x), axis)];
+        dot(quarter_turn(slope), own) / slope[0].hypot(slope[1])
+    }
+}
+
+impl Constraint for AlongCurve {
+    fn dimension(&self) -> Dimension {
+        Dimension::Angle
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let (_, [_, sin], _) = self.turned(at);
+        sin
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        let ([i, j], [cos, _], turn) = self.turned(at);
+        row.add_direction(j, cos);
+        row.add_direction(i, -cos);
+        row.add_joint_unknown(at.joint_unknown_column(self.place), -cos * turn[0]);
+    }
+
+    /// Returns −sin β β̇² − cos β α″ ṡ² with the curve's direction α(s).
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let ([i, j], [cos, sin], turn) = self.turned(at);
+        let rate = q_dot[at.joint_unknown_column(self.place)];
+        let omega = angular_velocity(j, q_dot) - angular_velocity(i, q_dot) - turn[0] * rate;
+        -sin * omega * omega - cos * turn[1] * rate * rate
+    }
+
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let [i, j] = [self.from, self.to].map(|marker| at.marker(marker));
+        let column = at.joint_unknown_column(self.place);
+        let slide = region.radius(column);
+        let range = around(at.joint_unknown(self.place), slide);
+        let place = self.path.place(|id| at.coefficient(id), range);
+        if !place.turn.iter().all(|turn| turn.is_finite()) {
+            return None;
+        }
+        let turn = place.turn.map(Interval::magnitude);
+        let changed = chord(region.turn(i) + region.turn(j) + turn[0] * slide);
+        row.add_direction(i, changed);
+        row.add_direction(j, changed);
+        row.add_joint_unknown(column, turn[0] * changed + turn[1] * slide);
+        let rate = v[column].abs();
+        let omega = (angular_velocity(j, v) - angular_velocity(i, v)).abs() + turn[0] * rate;
+        Some(omega * omega + turn[1] * rate * rate)
+    }
+
+    fn has_contour(&self) -> bool {
+        true
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        incidence.direction(mechanism, self.from);
+        incidence.direction(mechanism, self.to);
+        incidence.joint_unknown(mechanism, self.place);
+    }
+}
+
+/// Returns the range of numbers within a distance of one.
+fn around(middle: f64, reach: f64) -> Interval {
+    Interval::new(middle - reach, middle + reach)
+}
+
+/// The place of a point on a curve, for assembly.
+#[derive(Clone, Debug)]
+pub struct CurveContact {
+    /// Marker i, in whose frame the curve is.
+    pub from: MarkerId,
+    /// Marker j, whose point is on the curve.
+    pub to: MarkerId,
+    /// The curve.
+    pub path: CurvePath,
+}
+
+impl JointUnknown for CurveContact {
+    /// Returns the place on the curve that is nearest to the point.
+    fn estimate(&self, at: &Configuration) -> f64 {
+        let (i, j) = (at.marker(self.from), at.marker(self.to));
+        let d = j.point - i.point;
+        let own = Vector2::new(i.axis.dot(&d), perp(i.axis).dot(&d));
+        let off = |s: f64| {
+            let [x, y] = self.path.point(at, s);
+            [x - Jet::constant(own.x), y - Jet::constant(own.y)]
+        };
+        let square = |s: f64| {
+            let [x, y] = off(s).map(|c| c.value);
+            x * x + y * y
+        };
+        let step_length = (self.path.part * f64::from(PARTS)).recip();
+        let places = (0..=PARTS).map(|part| f64::from(part) * step_length);
+        let nearest = places
+            .map(|s| (square(s), s))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let mut s = nearest.map_or(0.0, |(_, s)| s);
+        for _ in 0..ITERATIONS {
+            let [x, y] = off(s);
+            let half = (x * x + y * y) * 0.5;
+            let step = -half.first() / half.second();
+            if !step.is_finite() || half.second() <= 0.0 {
+                break;
+            }
+            let step = step.clamp(-step_length, step_length);
+            s = if self.path.is_closed {
+                s + step
+            } else {
+                (s + step).clamp(0.0, 1.0)
+            };
+            if step.abs() < f64::EPSILON {
+                break;
+            }
+        }
+        s
+    }
+}
