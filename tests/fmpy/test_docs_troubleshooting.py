@@ -78,6 +78,7 @@ PARTS = {
     "a wheel's size in joint `…`": "… has no finite value",
     "a pulley's radius in joint `…`": "… has no finite value",
     "a number of parts in joint `…`": "… has no finite value",
+    "a number of joint `…`": "… has no finite value",
     "the mass, inertia or center of body `…`": "… has no finite value",
     "the … of body `…`": "the … of body `…` is …; it must …",
     "… is …; it must …": "the … of body `…` is …; it must …",

@@ -14,6 +14,7 @@ tomllib = pytest.importorskip("tomllib", reason="Python 3.10 has no TOML reader"
 WRONG = {
     "bad-expression_measure",
     "bad-profile",
+    "bad-profile_curve",
     "bad-table",
     "driver-source",
     "duplicate-output",
