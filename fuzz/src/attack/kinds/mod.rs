@@ -2,6 +2,7 @@
 
 mod cams;
 mod couplings;
+mod curves;
 mod groups;
 mod linkages;
 mod machines;
@@ -19,7 +20,7 @@ use crate::mutation::Chance;
 pub type Draw = fn(&mut Chance, Text<'_>) -> Case;
 
 /// The kinds with their names.
-pub const KINDS: [(&str, Draw); 34] = [
+pub const KINDS: [(&str, Draw); 36] = [
     ("four_bar", linkages::four_bar),
     ("six_bar", linkages::six_bar),
     ("slider_crank", sliders::slider_crank),
@@ -48,6 +49,8 @@ pub const KINDS: [(&str, Draw); 34] = [
     ("triad", groups::triad),
     ("ring_of_four", groups::ring_of_four),
     ("any_group", groups::any_group),
+    ("bar_in_groove", curves::bar_in_groove),
+    ("carriage", curves::carriage),
     ("rope_on_arm", ropes::rope_on_arm),
     ("counterweight", ropes::counterweight),
     ("three_cranks", redundant::three_cranks),
