@@ -19,7 +19,7 @@ def truth(_time, drivers):
 
 
 def properties(motion):
-    """The thread bears the load, the weight and the inertia of the head; the handle does its work."""
+    """The thread bears load, weight and inertia of the head; the handle does its work."""
     alpha = motion["turn.acceleration"]
     borne = LOAD + HEAD * (G + PER_RADIAN * alpha)
     torque = PER_RADIAN * LOAD
