@@ -271,7 +271,7 @@ class End:
     """End of a driver's range in one direction."""
 
     kind: str
-    """`turns`: none; `singular`: a dead point; `blocked`; `not found`: none up to `value`."""
+    """`turns`: none; `singular`: a dead point; `stop`; `blocked`; `not found`: none up to `value`."""
     value: float | None
     """Value of the driver there [m or rad]."""
     text: str

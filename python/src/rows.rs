@@ -143,6 +143,7 @@ fn end_row(mechanism: &Mechanism, driver: DriverId, end: &End) -> EndRow {
     match end {
         End::Turns(turns) => ("turns", None, text, Some(*turns)),
         End::Singular(point) => ("singular", Some(point.drivers[driver.index()]), text, None),
+        End::Stop { value, .. } => ("stop", Some(*value), text, None),
         End::Blocked { value, .. } => ("blocked", Some(*value), text, None),
         End::Bound { value } => ("bound", Some(*value), text, None),
         End::NotFound { value } => ("not found", Some(*value), text, None),

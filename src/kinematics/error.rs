@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::origin::Origin;
-use crate::mechanism::{ProfileError, show_time, shown, shown_apart};
+use super::stop_limit::StopLimit;
+use crate::mechanism::{CoordinateKind, ProfileError, show_time, shown, shown_apart};
 
 /// A call of the kinematics that could not do its work.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -61,6 +62,29 @@ pub enum Error {
         beyond: &'static str,
         /// The limit \[SI\].
         limit: f64,
+    },
+    /// The least value of a stop is not below its largest one.
+    #[error(
+        "stop `{stop}`: its `min` = {} is not below its `max` = {}",
+        .kind.show_apart(*.min, *.max)[0], .kind.show_apart(*.min, *.max)[1]
+    )]
+    StopLimits {
+        /// Name of the stop.
+        stop: String,
+        /// Kind of its coordinate.
+        kind: CoordinateKind,
+        /// The least value \[m or rad\].
+        min: f64,
+        /// The largest value \[m or rad\].
+        max: f64,
+    },
+    /// A pose at which a motion is to start is beyond a stop.
+    #[error("the start pose is beyond stop `{}`: {}", .limit.stop, .limit.describe_beyond(*.value))]
+    BeyondStop {
+        /// The limit.
+        limit: Box<StopLimit>,
+        /// The coordinate's value \[m or rad\].
+        value: f64,
     },
     /// The motion of a driver has no finite value, or no finite rates.
     #[error("{driver} has no finite {quantity}")]

@@ -29,7 +29,7 @@
 //! |---|---|
 //! | `tolerances` | the tolerances that several files share |
 //! | `linear` | dense and sparse matrices, condition, rank |
-//! | `origin`, `error`, `alignment`, `newton` | names for messages; errors; lines that meet; limits of Newton–Raphson |
+//! | `origin`, `stop_limit`, `error`, `alignment`, `newton` | names for messages; errors; lines that meet; limits of Newton–Raphson |
 //! | [`constraint`] | the bodies and markers at one q; one relation per file, with its derivatives |
 //! | `system` | the equations, their scales, their linearisation and their structure |
 //! | `path` | time, parameters and drivers over one step |
@@ -67,6 +67,7 @@ mod singular;
 mod solver;
 mod start;
 mod state;
+mod stop_limit;
 mod system;
 mod tolerances;
 
@@ -97,5 +98,6 @@ pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::Solver;
 pub use start::Assembly;
 pub use state::{Pose, SolverChoices};
+pub use stop_limit::StopLimit;
 pub use system::structure::{Dependencies, Structure};
 pub use system::{Equation, System, Target, Targets};

@@ -8,7 +8,7 @@ use super::analysis::{
 };
 use super::assembly::estimate::{Move, estimate, moves};
 use super::constraint::Constraint;
-use super::continuation::{Blocked, PathTracker, Progress};
+use super::continuation::{Blocked, PathTracker, Progress, check_pose};
 use super::error::Error;
 use super::forces::{
     self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff,
@@ -132,11 +132,14 @@ impl Solver {
     ///
     /// [`Error::NotAssembled`] with the joints that stay open, and a proof that the mechanism
     /// cannot close, if there is one; [`Error::Singular`] if it closes in a singular position;
-    /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism. The solver
-    /// is then without a valid pose until it is assembled or [restored](Self::restore); after the
-    /// first of these its pose is the nearest one.
+    /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism;
+    /// [`Error::BeyondStop`] for a pose beyond a stop. The solver is then without a valid pose until
+    /// it is assembled or [restored](Self::restore); after the first of these its pose is the
+    /// nearest one.
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
-        initial_pose::assemble(&mut self.compiled, &mut self.state, path)
+        let assembly = initial_pose::assemble(&mut self.compiled, &mut self.state, path)?;
+        check_pose(&self.compiled, &self.state)?;
+        Ok(assembly)
     }
 
     /// Returns the path from the pose, which is that of the mechanism's own values, to the start of a
@@ -187,21 +190,24 @@ impl Solver {
     /// # Errors
     ///
     /// [`Error::NoWay`] if no continuous motion leads there, and those of
-    /// [`assemble`](Self::assemble) if the mechanism does not close there. The solver is then
-    /// without the pose asked for until it is [restored](Self::restore).
+    /// [`assemble`](Self::assemble) if the mechanism does not close there or is beyond a stop. The
+    /// solver is then without the pose asked for until it is [restored](Self::restore).
     pub fn start(&mut self, home: &Pose, path: &Path) -> Result<Progress, Error> {
-        start::start(
-            &mut self.compiled,
-            &mut self.state,
-            &mut self.tracker,
-            home,
-            path,
-        )
+        let Self {
+            compiled,
+            state,
+            tracker,
+        } = self;
+        let started =
+            tracker.through_stops(|tracker| start::start(compiled, state, tracker, home, path));
+        let progress = started?;
+        check_pose(compiled, state)?;
+        Ok(progress)
     }
 
     /// Moves the mechanism along `path`, at whose start its pose must be. Change points on the way
-    /// are crossed on the smooth continuation of the motion. Allocates nothing, unless a block
-    /// comes near a singular position.
+    /// are crossed on the smooth continuation of the motion; at a stop the motion ends. Allocates
+    /// nothing, unless a block comes near a singular position.
     ///
     /// # Errors
     ///
@@ -210,6 +216,18 @@ impl Solver {
     pub fn track(&mut self, path: &Path) -> Result<Progress, Blocked> {
         self.tracker
             .track(&mut self.compiled, &mut self.state, path, false)
+    }
+
+    /// Moves the mechanism along `path` as [`track`](Self::track) does, through stops: for trial
+    /// poses that are no part of the motion.
+    ///
+    /// # Errors
+    ///
+    /// As [`track`](Self::track).
+    pub fn track_through_stops(&mut self, path: &Path) -> Result<Progress, Blocked> {
+        self.tracker.through_stops(|tracker| {
+            tracker.track(&mut self.compiled, &mut self.state, path, false)
+        })
     }
 
     /// Moves the mechanism along `path` as [`track`](Self::track) does, and gives up early where it
@@ -532,7 +550,12 @@ impl Solver {
     /// Returns the joints and constraints whose reactions redundant constraints leave
     /// indeterminate, known once the solver is [assembled](Self::assemble). The pose is unchanged.
     pub fn indeterminate(&mut self) -> Vec<Origin> {
-        forces::indeterminate(&mut self.compiled, &mut self.state, &mut self.tracker)
+        let Self {
+            compiled,
+            state,
+            tracker,
+        } = self;
+        tracker.through_stops(|tracker| forces::indeterminate(compiled, state, tracker))
     }
 
     /// Returns the instant centre of a body and ground, for rates of the present pose.

@@ -186,6 +186,17 @@ impl CoordinateKind {
         Unit::RADIAN_PER_SECOND_SQUARED,
     ];
 
+    /// Returns its word in the file.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Angle => "angle",
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Distance => "distance",
+        }
+    }
+
     /// Returns the units of its values and of their first and second time derivatives.
     #[must_use]
     pub fn units(self) -> [Unit; 3] {

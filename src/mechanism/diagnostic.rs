@@ -145,6 +145,7 @@ codes! {
     PARAMETER_CYCLE = "parameter-cycle",
     RESERVED_NAME = "reserved-name",
     SAME_BODY = "same-body",
+    STOP_COORDINATE = "stop-coordinate",
     SYNTAX = "syntax",
     TABLE_FILE = "table-file",
     TOO_MANY_PROBLEMS = "too-many-problems",

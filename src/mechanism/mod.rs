@@ -15,6 +15,7 @@
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
 //! | `reaction` | [`ForceQuantity`]: forces, energies and inertias by name |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
+//! | `stop` | [`Stop`]: limits of a coordinate |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
 //! | `setting` | start values of the FMU's settings |
 //! | `names`, `lookup`, `id` | names, and what they stand for |
@@ -44,6 +45,7 @@ mod setting;
 mod signal;
 mod source;
 mod spline;
+mod stop;
 mod syntax;
 mod table;
 mod toml_error;
@@ -80,6 +82,7 @@ pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
+pub use stop::Stop;
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
@@ -129,6 +132,8 @@ pub struct Mechanism {
     pub derived: Vec<DerivedMeasure>,
     /// Forces.
     pub forces: Vec<Force>,
+    /// Limits that coordinates do not pass.
+    pub stops: Vec<Stop>,
     /// Outputs of the FMU besides measures and solver quantities.
     pub outputs: Outputs,
     /// Default experiment.

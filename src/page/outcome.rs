@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::kinematics::{Blocked, Error, Path, Rates, Reason, Solver};
+use crate::kinematics::{Blocked, Error, Path, Rates, Reason, Solver, StopLimit};
 use crate::mechanism::{DriverId, Mechanism};
 
 /// The outcome of a move.
@@ -69,9 +69,13 @@ impl Obstacle {
             Reason::Contradiction(open) => vec![&open.origin],
             _ => Vec::new(),
         };
+        let at = match &blocked.reason {
+            Reason::Stop(limit) => place_of_stop(limit, solver),
+            _ => place_of(&names, solver),
+        };
         Self {
             message: blocked.describe(solver.mechanism(), pose, time, moves),
-            at: place_of(&names, solver),
+            at,
             assembles: false,
         }
     }
@@ -89,6 +93,18 @@ impl Obstacle {
             assembles: false,
         }
     }
+}
+
+/// Returns the point to which a stop measures.
+fn place_of_stop(limit: &StopLimit, solver: &Solver) -> Option<[f64; 2]> {
+    let mut stops = solver.mechanism().stops.iter();
+    let stop = stops.find(|stop| stop.name == limit.stop)?;
+    let none = Rates::new(solver.pose().q.len());
+    Some(
+        solver
+            .marker(stop.coordinate.to, &none)
+            .map(|jet| jet.value),
+    )
 }
 
 /// Returns the place of things that messages name as joint `A` or body `rod`: a joint that is

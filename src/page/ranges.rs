@@ -43,9 +43,10 @@ pub(super) fn driver_ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, V
             End::Turns(_) => None,
             End::Singular(point) => Some(point.drivers[index]),
             End::NotFound { .. } if is_angle => None,
-            End::Blocked { value, .. } | End::Bound { value } | End::NotFound { value } => {
-                Some(*value)
-            }
+            End::Stop { value, .. }
+            | End::Blocked { value, .. }
+            | End::Bound { value }
+            | End::NotFound { value } => Some(*value),
         };
         let ends = [end(&range.lower), end(&range.upper)];
         poses.extend(range.samples.into_iter().map(|sample| sample.pose.q));

@@ -13,7 +13,9 @@ use super::undo::{Kept, UndoHistory};
 use super::values::shown_in;
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
-use crate::kinematics::{Curve, ForceQuantity, Output, OutputSource, Path, Pose, Solution, Solver};
+use crate::kinematics::{
+    Curve, ForceQuantity, Output, OutputSource, Path, Pose, Reason, Solution, Solver,
+};
 use crate::mechanism::{
     DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source, Unit,
 };
@@ -178,6 +180,11 @@ impl Session {
             return Outcome::Reached;
         };
         let mut obstacle = Obstacle::of_stop(&blocked, &self.solver, &self.path, |_| false);
+        if let Reason::Stop(_) = blocked.reason {
+            self.solver.restore(&before);
+            self.refresh();
+            return Outcome::Refused(obstacle);
+        }
         let way = before.parameters[parameter.index()];
         let limit = way + blocked.s * (value - way);
         self.solver.restore(&before);

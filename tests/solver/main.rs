@@ -26,4 +26,5 @@ mod singular;
 mod singular_kinds;
 mod start;
 mod stepping;
+mod stops;
 mod verdicts;

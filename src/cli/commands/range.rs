@@ -296,6 +296,7 @@ pub(in crate::cli) fn end_text(end: &End, driver: &Driver, id: DriverId) -> Stri
     match end {
         End::Turns(_) => "no limit".to_owned(),
         End::Singular(point) => format!("{}: {point}", value(point.drivers[id.index()])),
+        End::Stop { value: at, limit } => format!("{}: {limit}", value(*at)),
         End::Blocked { value: at, reason } => {
             let reason = match reason {
                 Reason::Value(error) => error.to_string(),

@@ -9,6 +9,7 @@ use crate::kinematics::path::{Curve, Path, Rates};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::{Pose, State};
+use crate::kinematics::stop_limit::StopLimit;
 use crate::mechanism::{DriverId, Jet};
 
 /// The range of a driver from one pose, in both directions.
@@ -46,6 +47,13 @@ pub enum End {
     Turns(u32),
     /// A singular position, located to rounding; as a rule a dead point.
     Singular(Box<SingularPoint>),
+    /// A stop, which is located to rounding.
+    Stop {
+        /// The driver's value there \[m or rad\].
+        value: f64,
+        /// The limit that ends the motion.
+        limit: Box<StopLimit>,
+    },
     /// A value beyond which the tracker stopped for another reason.
     Blocked {
         /// The driver's value that was reached \[m or rad\].
@@ -294,6 +302,10 @@ impl Explorer<'_> {
         let end = match tracked {
             Ok(()) => None,
             Err(Reason::Singular(point)) => Some(End::Singular(point)),
+            Err(Reason::Stop(limit)) => Some(End::Stop {
+                value: self.value_of(&reached),
+                limit,
+            }),
             Err(reason) => Some(End::Blocked {
                 value: self.value_of(&reached),
                 reason,

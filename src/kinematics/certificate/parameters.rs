@@ -16,7 +16,7 @@ use crate::kinematics::constraint::configuration::{CamProfile, Configuration};
 use crate::kinematics::constraint::moving_configuration::{
     Enclosed, EnclosedCurves, VariedConfiguration, VariedMechanism, bend, evaluate,
 };
-use crate::kinematics::constraint::{Dimension, partial};
+use crate::kinematics::constraint::{Constraint, Dimension, partial};
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{Equation, System, Target, Targets};
 use crate::kinematics::tolerances::SMALLEST_SUBSTEP;
@@ -281,6 +281,11 @@ impl ParameterBounds {
         self.moving && self.rows[row].moves
     }
 
+    /// Returns the change of a row's target, and the largest deviation that may be a jump.
+    pub(in crate::kinematics) fn change_of(&self, row: usize) -> (Change, f64) {
+        (self.rows[row].target, self.rows[row].largest_jump)
+    }
+
     /// Returns the change of a row's target; zero for a driver's \[m or rad\].
     pub(in crate::kinematics) fn target(&self, row: usize) -> Change {
         self.rows[row].target
@@ -424,6 +429,20 @@ impl ParameterBounds {
         equation: &Equation,
         profiles: &[CamProfile],
     ) -> Option<f64> {
+        let row = &self.rows[row];
+        let along = self.bend_along(&*equation.constraint, profiles, row.largest_jump);
+        let bend = along + row.target.second;
+        bend.is_finite().then_some(bend)
+    }
+
+    /// Bounds the [bend](bend()) of a relation along the chords of its unknowns; infinite without a
+    /// bound, and where it may jump by more than `largest_jump`.
+    pub(in crate::kinematics) fn bend_along(
+        &self,
+        relation: &dyn Constraint,
+        profiles: &[CamProfile],
+        largest_jump: f64,
+    ) -> f64 {
         let mechanism = VariedMechanism {
             bodies: &self.along,
             curves: EnclosedCurves {
@@ -432,16 +451,19 @@ impl ParameterBounds {
                 laws: &self.laws[0],
             },
         };
-        let row = &self.rows[row];
-        let enclosed: Enclosed = equation.constraint.along(&mechanism);
-        let bend = bend_within(&enclosed, row.largest_jump) + row.target.second;
-        bend.is_finite().then_some(bend)
+        let enclosed: Enclosed = relation.along(&mechanism);
+        bend_within(&enclosed, largest_jump)
+    }
+
+    /// Bounds the [bend](bend()) of a number; infinite where it may jump.
+    pub(in crate::kinematics) fn bend_of(&self, number: &Expression) -> f64 {
+        bend_within(&evaluate(number, &self.local), 0.0)
     }
 
     /// Encloses the derivative of a relation by an unknown in the region around the chords.
     pub(in crate::kinematics) fn partial(
         &mut self,
-        equation: &Equation,
+        relation: &dyn Constraint,
         profiles: &[CamProfile],
         column: usize,
     ) -> Interval {
@@ -450,6 +472,6 @@ impl ParameterBounds {
             moving: &self.profiles[1],
             laws: &self.laws[1],
         };
-        partial(&*equation.constraint, &mut self.around, curves, column)
+        partial(relation, &mut self.around, curves, column)
     }
 }

@@ -7,7 +7,9 @@
 
 mod driver_bounds;
 mod outcome;
+mod stops;
 mod tracker;
 
 pub use outcome::{Blocked, Progress, Reason};
+pub(super) use stops::check_pose;
 pub(super) use tracker::{PathTracker, most_substeps};

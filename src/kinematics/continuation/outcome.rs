@@ -4,6 +4,7 @@ use crate::kinematics::Error;
 use crate::kinematics::error::OpenJoint;
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::Pose;
+use crate::kinematics::stop_limit::StopLimit;
 use crate::kinematics::tolerances::SAME_PLACE_ON_PATH;
 use crate::mechanism::{DriverId, Mechanism, fixed};
 
@@ -14,6 +15,8 @@ pub enum Reason {
     /// The Jacobian loses rank ahead, at a dead point or at a singular position that cannot be
     /// crossed.
     Singular(Box<SingularPoint>),
+    /// A coordinate is at the limit of a stop, and the motion leads out.
+    Stop(Box<StopLimit>),
     /// Neither a continuous motion nor a singular position was found ahead: the block that stops
     /// is too large for a search, or parameters move it.
     Lost,
@@ -105,6 +108,7 @@ impl Blocked {
                     .to_owned()
             }
             Reason::Singular(point) => point.to_string(),
+            Reason::Stop(limit) => limit.to_string(),
             Reason::Jump(driver) => {
                 let driver = &mechanism.drivers[driver.index()];
                 format!("the motion of driver `{}` jumps", driver.name)

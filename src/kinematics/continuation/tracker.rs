@@ -11,6 +11,7 @@ use pace::{Pace, Verdict};
 
 use super::driver_bounds::bound_drivers;
 use super::outcome::{Blocked, Progress, Reason};
+use super::stops::StopWatch;
 use crate::kinematics::Error;
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::OpenJoint;
@@ -39,6 +40,9 @@ pub(in crate::kinematics) struct PathTracker {
     /// The change points passed on the path tracked last.
     crossed: Vec<Arc<Crossing>>,
     fruitless: FruitlessSearches,
+    stops: StopWatch,
+    /// Whether paths lead through stops, as searches for a pose do.
+    ignores_stops: bool,
 }
 
 impl PathTracker {
@@ -49,7 +53,20 @@ impl PathTracker {
             bounds: StepBounds::new(system),
             crossed: Vec::new(),
             fruitless: FruitlessSearches::default(),
+            stops: StopWatch::new(system.mechanism().stops.len()),
+            ignores_stops: false,
         }
+    }
+
+    /// Does work on paths that lead through stops.
+    pub(in crate::kinematics) fn through_stops<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        let before = std::mem::replace(&mut self.ignores_stops, true);
+        let done = work(self);
+        self.ignores_stops = before;
+        done
     }
 
     /// Returns the change points that the last path passed, in order.
@@ -84,6 +101,8 @@ impl PathTracker {
             bounds: &mut self.bounds,
             crossed: &mut self.crossed,
             fruitless: &mut self.fruitless,
+            watches_stops: !self.stops.is_empty() && !self.ignores_stops,
+            stops: &mut self.stops,
             path,
             s: 0.0,
             length: 1.0,
@@ -116,6 +135,8 @@ struct Run<'a> {
     bounds: &'a mut StepBounds,
     crossed: &'a mut Vec<Arc<Crossing>>,
     fruitless: &'a mut FruitlessSearches,
+    watches_stops: bool,
+    stops: &'a mut StopWatch,
     path: &'a Path,
     /// The place on the path where the mechanism is.
     s: f64,
@@ -194,6 +215,9 @@ impl Run<'_> {
         self.state.pose.time = self.path.time(0.0);
         self.evaluate_drivers(0.0);
         self.drivers.arrive();
+        if self.watches_stops {
+            self.stops.begin(self.compiled, self.state);
+        }
         Ok(())
     }
 
@@ -327,11 +351,19 @@ impl Run<'_> {
     /// The cause of a stop, if a sub-step of the length `smallest` is rejected.
     fn step(&mut self, smallest: f64) -> Result<bool, Reason> {
         // A motion given by a table is bounded between its points only.
-        let most = self.path.next_point(self.s, &self.state.motions);
+        let point = self.path.next_point(self.s, &self.state.motions);
         loop {
+            let most = if self.watches_stops {
+                point.min(self.stops.most)
+            } else {
+                point
+            };
             let goal = self.goal(most);
             self.progress.substeps = self.progress.substeps.saturating_add(1);
             match self.try_step(goal.s) {
+                Ok(_) if self.watches_stops && !self.is_clear_of_stops(goal.s)? => {
+                    self.return_to_pose();
+                }
                 Ok(correction) => {
                     self.accept(goal.s, correction);
                     return Ok(goal.cut_short);
@@ -376,6 +408,36 @@ impl Run<'_> {
             self.watch_rows()?;
         }
         Ok(correction)
+    }
+
+    /// Returns whether a certified sub-step is clear of all stops.
+    ///
+    /// # Errors
+    ///
+    /// The stop that the pose is at, if the motion leads out.
+    // Inlined, it would be part of steps without stops.
+    #[inline(never)]
+    fn is_clear_of_stops(&mut self, end: f64) -> Result<bool, Reason> {
+        let parameters = if self.drivers.parameters_move {
+            &self.drivers.parameters
+        } else {
+            &self.state.pose.parameters
+        };
+        let part = [self.s, end];
+        let checked = self
+            .stops
+            .check(self.compiled, self.state, parameters, self.bounds, part);
+        match checked {
+            Ok(false) => Ok(false),
+            Ok(true) => {
+                self.stops.accept(self.compiled, self.state, part);
+                Ok(true)
+            }
+            Err(limit) => {
+                self.return_to_pose();
+                Err(Reason::Stop(limit))
+            }
+        }
     }
 
     /// Watches the rows set aside at the end of a sub-step, and between its ends.

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::BlockPlan;
 use crate::kinematics::constraint::configuration::Configuration;
-use crate::kinematics::constraint::{Constraint, of_coordinate};
+use crate::kinematics::constraint::{Constraint, Incidence, of_coordinate};
 use crate::kinematics::system::structure::{Block, Structure};
 use crate::kinematics::system::{System, Target, Targets};
-use crate::mechanism::{DriverId, DriverSource, Mechanism};
+use crate::mechanism::{DriverId, DriverSource, Mechanism, Stop};
 
 /// The equations of a mechanism and the way in which they are solved.
 #[derive(Debug)]
@@ -17,8 +17,44 @@ pub(in crate::kinematics) struct CompiledMechanism {
     pub(in crate::kinematics) plan: BlockPlan,
     pub(in crate::kinematics) redundant: RedundantRows,
     pub(in crate::kinematics) measures: Vec<Box<dyn Constraint>>,
+    pub(in crate::kinematics) stops: Vec<StopRelation>,
     /// Per driver: the file's own coordinate of a freedom that is integrated in another one.
     pub(in crate::kinematics) named: Vec<Option<Box<dyn Constraint>>>,
+}
+
+/// The coordinate of a stop.
+#[derive(Debug)]
+pub(in crate::kinematics) struct StopRelation {
+    pub(in crate::kinematics) relation: Box<dyn Constraint>,
+    /// The unknowns in it, each once.
+    pub(in crate::kinematics) columns: Vec<usize>,
+    /// The part of the mechanism's size that scales it, `None` for an angle.
+    pub(in crate::kinematics) part: Option<f64>,
+}
+
+impl StopRelation {
+    fn new(system: &System, stop: &Stop) -> Self {
+        let relation = of_coordinate(&stop.coordinate);
+        let mut incidence = Incidence::default();
+        relation.incidence(system.mechanism(), &mut incidence);
+        let mut columns = incidence.unknowns;
+        columns.sort_unstable();
+        columns.dedup();
+        let parts = columns
+            .iter()
+            .filter_map(|column| system.column_part(*column));
+        let part = parts.reduce(f64::max).unwrap_or(1.0);
+        Self {
+            relation,
+            part: (!stop.coordinate.kind.is_angle()).then_some(part),
+            columns,
+        }
+    }
+
+    /// Returns the scale factor of the coordinate \[m or rad\], for this size of the mechanism.
+    pub(in crate::kinematics) fn scale(&self, size: f64) -> f64 {
+        self.part.map_or(1.0, |part| size * part)
+    }
 }
 
 /// The rows of Phi that are redundant, and those set aside instead of them.
@@ -63,6 +99,8 @@ impl CompiledMechanism {
         });
         let named = named.collect();
         let system = System::new(mechanism);
+        let stops = system.mechanism().stops.iter();
+        let stops = stops.map(|stop| StopRelation::new(&system, stop)).collect();
         let structure = Structure::new(&system, &[]);
         let pairs_up = structure.is_some();
         let structure = structure.unwrap_or_else(|| Structure::of_nothing(&system));
@@ -71,6 +109,7 @@ impl CompiledMechanism {
             structure,
             redundant: RedundantRows::default(),
             measures,
+            stops,
             named,
             system,
         };

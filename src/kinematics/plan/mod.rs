@@ -36,6 +36,7 @@ mod rrp_dyad;
 mod rrr_dyad;
 mod solve;
 mod step;
+mod watched;
 
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
@@ -60,6 +61,7 @@ use rrp_dyad::RrpDyad;
 use rrr_dyad::RrrDyad;
 pub(super) use solve::{BlockBranches, SolveBlock};
 pub(super) use step::{BlockState, Extrapolation, Step};
+pub(super) use watched::Watched;
 
 /// The blocks in the order of solution.
 #[derive(Debug, Default)]

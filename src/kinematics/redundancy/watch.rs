@@ -5,8 +5,8 @@
 //! depend on one are bounded over the sub-step, in the region of the chord and its radii.
 
 use crate::kinematics::certificate::StepBounds;
-use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::newton::Rejected;
+use crate::kinematics::plan::Watched;
 use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, ContourRow};
 use crate::kinematics::state::State;
 
@@ -56,66 +56,26 @@ fn open_between(
 ) -> Result<f64, f64> {
     let CompiledMechanism { system, plan, .. } = compiled;
     let at = &state.at;
-    let mut largest_move = 0.0_f64;
-    for &column in &row.columns {
-        let chord = at.coordinate(column) - state.pose.q[column];
-        bounds.chord[column] = chord;
-        // The region contains the whole chord, seen from its end.
-        bounds.region[column] = chord.abs() + bounds.deviation(column, &plan.pivots);
-        let scale = system.column_scale(column, at.size());
-        largest_move = largest_move.max(bounds.region[column] / scale);
-    }
     let equation = &system.equations()[row.row];
-    if bounds.parameters.moves(row.row) {
-        let open = open_while_moving(compiled, state, row, bounds);
-        for &column in &row.columns {
-            bounds.region[column] = 0.0;
-            bounds.chord[column] = 0.0;
+    let watched = Watched {
+        relation: &*equation.constraint,
+        columns: &row.columns,
+        at,
+        from: &state.pose.q,
+        pivots: &plan.pivots,
+    };
+    let open = if bounds.parameters.moves(row.row) {
+        let (target, largest_jump) = bounds.parameters.change_of(row.row);
+        let open = watched.deviation_while_moving(bounds, largest_jump);
+        open.map(|open| open + 0.125 * target.second)
+    } else {
+        watched.deviation(bounds)
+    };
+    match open.filter(|open| open.is_finite()) {
+        Some(open) => Ok(open * equation.row_scale(at)),
+        None => {
+            let scale = |column| system.column_scale(column, at.size());
+            Err(watched.largest_move(bounds, scale))
         }
-        return open.ok_or(largest_move);
     }
-    let constraint = &equation.constraint;
-    let (mut gradient, mut change) = (Gradient::new(), Gradient::new());
-    constraint.gradient(at, &mut gradient);
-    let region = Region::around(&bounds.region);
-    let along = constraint.bend(at, &region, &bounds.chord, &mut change);
-    let steepest = gradient.entries().chain(change.entries());
-    let off_chord = steepest.map(|(column, slope)| {
-        let deviation = bounds.deviation(column, &plan.pivots);
-        slope.abs() * deviation
-    });
-    let off_chord: f64 = off_chord.sum();
-    for &column in &row.columns {
-        bounds.region[column] = 0.0;
-        bounds.chord[column] = 0.0;
-    }
-    let open = along.map(|along| (0.125 * along + off_chord) * equation.row_scale(at));
-    open.ok_or(largest_move)
-}
-
-/// Bounds a row, scaled, over a sub-step on which parameters move its numbers. Returns `None`
-/// without a bound.
-#[cold]
-fn open_while_moving(
-    compiled: &CompiledMechanism,
-    state: &State,
-    row: &ContourRow,
-    bounds: &mut StepBounds,
-) -> Option<f64> {
-    let CompiledMechanism { system, plan, .. } = compiled;
-    let at = &state.at;
-    let equation = &system.equations()[row.row];
-    let deviation = |bounds: &StepBounds, column| bounds.deviation(column, &plan.pivots);
-    for &column in &row.columns {
-        let ends = [state.pose.q[column], at.coordinate(column)];
-        let radius = deviation(bounds, column);
-        bounds.parameters.set_chord(column, ends, radius);
-    }
-    let mut open = 0.125 * bounds.parameters.bend(row.row, equation, at.profiles())?;
-    for &column in &row.columns {
-        let radius = deviation(bounds, column);
-        let slope = (bounds.parameters).partial(equation, at.profiles(), column);
-        open += slope.magnitude() * radius;
-    }
-    open.is_finite().then(|| open * equation.row_scale(at))
 }

@@ -340,10 +340,10 @@ impl System {
     ///
     /// # Errors
     ///
-    /// [`Error::Limit`] if a derived parameter is outside its limits, [`Error::NotFinite`] where an
-    /// expression leaves its domain, [`Error::NotPositive`] where a distance is held at a value
-    /// that is not positive. Configuration and targets are then without use until valid values are
-    /// set.
+    /// [`Error::Limit`] if a derived parameter is outside its limits, [`Error::StopLimits`] where
+    /// those of a stop leave no room, [`Error::NotFinite`] where an expression leaves its domain,
+    /// [`Error::NotPositive`] where a distance is held at a value that is not positive.
+    /// Configuration and targets are then without use until valid values are set.
     pub fn set_parameters(
         &self,
         parameters: &[f64],
@@ -351,6 +351,7 @@ impl System {
         targets: &mut Targets,
     ) -> Result<(), Error> {
         self.check_derived(parameters)?;
+        self.check_stops(parameters)?;
         at.set_parameters(&self.mechanism, &self.joint_parts.coefficients, parameters)?;
         for (equation, constant) in self.equations.iter().zip(&mut targets.constants) {
             let Target::Constant(expression) = &equation.target else {
@@ -396,6 +397,26 @@ impl System {
                         limit,
                     });
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the limits of stops leave room between them.
+    fn check_stops(&self, parameters: &[f64]) -> Result<(), Error> {
+        for stop in &self.mechanism.stops {
+            let [min, max] = stop.limits(parameters);
+            if min.is_nan() || max.is_nan() {
+                let what = format!("a limit of stop `{}`", stop.name);
+                return Err(Error::NotFinite { what });
+            }
+            if min >= max {
+                return Err(Error::StopLimits {
+                    stop: stop.name.clone(),
+                    kind: stop.coordinate.kind,
+                    min,
+                    max,
+                });
             }
         }
         Ok(())

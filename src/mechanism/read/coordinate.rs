@@ -39,12 +39,13 @@ table! {
 }
 
 const COORDINATE: Word<CoordinateKind> = Word::new("coordinate", code::UNKNOWN_COORDINATE, || {
-    vec![
-        ("angle", CoordinateKind::Angle),
-        ("x", CoordinateKind::X),
-        ("y", CoordinateKind::Y),
-        ("distance", CoordinateKind::Distance),
-    ]
+    let kinds = [
+        CoordinateKind::Angle,
+        CoordinateKind::X,
+        CoordinateKind::Y,
+        CoordinateKind::Distance,
+    ];
+    kinds.map(|kind| (kind.word(), kind)).into()
 })
 .with_synonyms(|text| match text.to_ascii_lowercase().as_str() {
     "rotation" | "phi" => Some(word_here("angle")),

@@ -68,6 +68,7 @@ impl<'a> Context<'a> {
             ("freedom", &root.freedoms),
             ("measure", &root.measures),
             ("force", &root.forces),
+            ("stop", &root.stops),
         ];
         let entries = sections
             .iter()

@@ -22,6 +22,7 @@ use super::kind::Described;
 use super::kind::{Entry, Fields, Item, Kind, Named, Section, Text, schema};
 use super::parameter::AnyParameter;
 use super::settings::{OutputKeys, SimulationKeys};
+use super::stop::AnyStop;
 use super::table::table;
 
 table! {
@@ -61,6 +62,8 @@ table! {
         measures: Vec<Entry<'a>> = Named(PhantomData::<AnyMeasure>),
         /// Forces on the bodies, besides gravity.
         forces: Vec<Entry<'a>> = Named(PhantomData::<AnyForce>),
+        /// Limits of coordinates, at which the motion ends.
+        stops: Vec<Entry<'a>> = Named(PhantomData::<AnyStop>),
         /// Outputs of the FMU.
         outputs: Fields<'a> = Section(PhantomData::<OutputKeys<'static>>),
         /// Default experiment.

@@ -215,7 +215,7 @@ impl BlockEquations {
         let mut change = Gradient::new();
         equation.constraint.gradient(state.at, &mut change);
         change.replace(|column, value| {
-            let range = parameters.partial(equation, profiles, column);
+            let range = parameters.partial(&*equation.constraint, profiles, column);
             (range - Interval::point(value)).magnitude()
         });
         let finite = change.entries().all(|(_, value)| value.is_finite());
