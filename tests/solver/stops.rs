@@ -340,6 +340,7 @@ wall = { coordinate = "distance", markers = ["ground.S", "nut.N"], max = 0.13, m
     );
     assert!((blocked.s - 0.65).abs() < PLACE);
     assert_eq!(stop_of(&blocked).stop, "wall");
+    assert!(blocked.progress.substeps < 100, "{:?}", blocked.progress);
 }
 
 /// A four-bar of 0.1, 0.25, 0.3 on a base of 0.4 m, whose rocker's angle follows from the law of

@@ -283,10 +283,10 @@ fn deviation(
     stop: usize,
     bounds: &mut StepBounds,
 ) -> f64 {
-    let stop = &compiled.stops[stop];
+    let relation = &compiled.stops[stop];
     let watched = Watched {
-        relation: &*stop.relation,
-        columns: &stop.columns,
+        relation: &*relation.relation,
+        columns: &relation.columns,
         at: &state.at,
         from: &state.pose.q,
         pivots: &compiled.plan.pivots,
@@ -294,9 +294,27 @@ fn deviation(
     let deviation = if bounds.parameters.moving {
         watched.deviation_while_moving(bounds, 0.0)
     } else {
-        watched.deviation(bounds)
+        let smooth = watched.deviation(bounds);
+        smooth.or_else(|| Some(2.0 * swept(compiled, state, stop, bounds)))
     };
     deviation.filter(|d| !d.is_nan()).unwrap_or(f64::INFINITY)
+}
+
+/// Bounds the change of a distance over the sub-step, also where its points meet: by their ways.
+fn swept(compiled: &CompiledMechanism, state: &State, stop: usize, bounds: &StepBounds) -> f64 {
+    let coordinate = compiled.system.mechanism().stops[stop].coordinate;
+    let way = |column: usize| {
+        let chord = state.at.coordinate(column) - state.pose.q[column];
+        chord.abs() + bounds.deviation(column, &compiled.plan.pivots)
+    };
+    let ways = [coordinate.from, coordinate.to].map(|id| {
+        let marker = state.at.marker(id);
+        marker.body.map_or(0.0, |body| {
+            let k = 3 * body.index();
+            way(k) + way(k + 1) + marker.arm.norm() * way(k + 2)
+        })
+    });
+    ways[0] + ways[1]
 }
 
 /// Bounds the deviation of a limit from its chord over the sub-step.
