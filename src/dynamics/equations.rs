@@ -7,8 +7,8 @@ use super::given::Given;
 use super::integrator::{Failure, System};
 use super::state::FreeState;
 use crate::kinematics::{
-    Curve, Direction, EquationsOfMotion, ForceQuantity, Forces, KnownMotion, Path, Pose, Rates,
-    Solver, SolverChoices,
+    Blocked, Curve, Direction, EquationsOfMotion, ForceQuantity, Forces, KnownMotion, Path, Pose,
+    Rates, Reason, Solver, SolverChoices,
 };
 use crate::mechanism::{DriverId, Jet, Mechanism};
 
@@ -245,10 +245,10 @@ impl Equations {
     }
 
     /// Proves that one motion joins the accepted pose and that at the present point, where the
-    /// mechanism has several drivers: trials on the way may have led round a place at which two
-    /// assembly modes meet. The drivers move on parabolas between the two.
+    /// mechanism has several drivers or stops: trials on the way may have led round a place at which two
+    /// assembly modes meet. The drivers move on parabolas between the two, which may lead into a stop.
     pub(super) fn prove(&mut self, solver: &mut Solver) -> Result<(), Error> {
-        if self.point.drivers.len() < 2 {
+        if self.point.drivers.len() < 2 && solver.mechanism().stops.is_empty() {
             return Ok(());
         }
         solver.save(&mut self.end);
@@ -278,6 +278,15 @@ impl Equations {
         let tracked = solver.track(&self.path);
         let is_same = tracked.is_ok() && solver.is_near(&self.end);
         solver.restore(&self.end);
+        if let Err(Blocked {
+            s,
+            reason: Reason::Stop(limit),
+            ..
+        }) = tracked
+        {
+            let time = start + s * h;
+            return Err(Error::Stop { limit, time });
+        }
         if is_same {
             self.is_astray = false;
             return Ok(());
@@ -354,8 +363,20 @@ impl Equations {
         for ((curve, driver), now) in curves.zip(&pose.drivers) {
             *curve = Curve::held(driver.value, *now);
         }
-        match solver.track(&self.path) {
+        // A trial may lie beyond a stop; only what is accepted is part of the motion.
+        let tracked = match parameters {
+            Some(_) => solver.track(&self.path),
+            None => solver.track_through_stops(&self.path),
+        };
+        match tracked {
             Ok(_) => Ok(()),
+            Err(Blocked {
+                reason: Reason::Stop(limit),
+                ..
+            }) => {
+                self.is_astray = true;
+                Err(Error::Stop { limit, time })
+            }
             Err(blocked) => {
                 self.is_astray = true;
                 let described =
@@ -539,7 +560,12 @@ impl<G: Given> System for Trials<'_, G> {
     }
 
     fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
-        self.equations.prove(self.solver).map_err(Failure::Trial)?;
+        let proved = self.equations.prove(self.solver);
+        proved.map_err(|error| match error {
+            // The time of a stop is known: no shorter steps have to find it.
+            Error::Stop { .. } => Failure::Hard(error),
+            _ => Failure::Trial(error),
+        })?;
         self.equations.accept(self.solver);
         Ok(())
     }

@@ -1,7 +1,8 @@
 //! Reasons for which a free motion stops.
 
 use super::integrator;
-use crate::kinematics;
+use crate::kinematics::{self, StopLimit};
+use crate::mechanism::fixed;
 
 /// The reason for which a free motion stops.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -9,6 +10,14 @@ pub enum Error {
     /// A singular position, a contradiction, a value without a mechanism.
     #[error("{0}")]
     Blocked(String),
+    /// A stop.
+    #[error("{limit} at t = {} s: the free motion cannot go on", fixed(*.time, 9))]
+    Stop {
+        /// The limit.
+        limit: Box<StopLimit>,
+        /// Time at which it is reached \[s\].
+        time: f64,
+    },
     /// Rates or forces do not exist.
     #[error(transparent)]
     Kinematics(#[from] kinematics::Error),

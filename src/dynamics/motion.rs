@@ -13,6 +13,13 @@ use super::state::FreeState;
 use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, Jet};
 
+/// Time to a stop at which the motion is there, as a part of the time or of the way to go: some
+/// roundings.
+const AT_STOP: f64 = 1e-14;
+/// Part of the time to a stop by which a step ends in front of it: the motion between the ends of a
+/// step is known less well than the ends, and a step that ends beyond is in vain.
+const SHORT_OF_STOP: f64 = 1e-4;
+
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
 ///
 /// It moves a [`Solver`] of the mechanism, whose pose it expects where it left it.
@@ -341,7 +348,7 @@ impl FreeMotion {
     /// # Errors
     ///
     /// The reason for which it stops; the mechanism is then where the last step of the integrator
-    /// has left it.
+    /// has left it, at a stop to rounding.
     pub fn advance(
         &mut self,
         solver: &mut Solver,
@@ -349,20 +356,42 @@ impl FreeMotion {
         given: &impl Given,
         until: f64,
     ) -> Result<(), Error> {
-        while self.integrator.state().t.to_bits() != until.to_bits() {
+        // In front of a stop a step ends at the time at which the stop is expected.
+        let mut goal = until;
+        let start = self.integrator.state().t;
+        let resolution = AT_STOP * start.abs().max((until - start).abs());
+        loop {
+            let now = self.integrator.state().t;
+            if now.to_bits() == until.to_bits() {
+                return Ok(());
+            }
+            if now.to_bits() == goal.to_bits() {
+                goal = until;
+            }
             let mut trials = Trials {
                 solver,
                 equations: &mut self.equations,
                 given,
             };
-            let step = self.integrator.advance(&mut trials, until);
-            if let Err(error) = step {
-                self.equations.return_to_accepted(solver);
-                return Err(error.into());
+            match self
+                .integrator
+                .advance(&mut trials, goal)
+                .map_err(Error::from)
+            {
+                Ok(_) => {
+                    self.exchange(solver, solution, given)?;
+                }
+                Err(error) => {
+                    self.equations.return_to_accepted(solver);
+                    match error {
+                        Error::Stop { time, .. } if time - now > resolution => {
+                            goal = now + (1.0 - SHORT_OF_STOP) * (time - now);
+                        }
+                        _ => return Err(error),
+                    }
+                }
             }
-            self.exchange(solver, solution, given)?;
         }
-        Ok(())
     }
 
     /// Returns the solver whose coordinates are the file's freedoms, given the one in use.

@@ -14,3 +14,4 @@ mod hostile;
 mod instance;
 mod model;
 mod model_description;
+mod stops;

@@ -43,7 +43,11 @@ impl MechanismModel {
                 });
             }
         }
-        if self.path.moves_parameters() {
+        if let Reason::Stop(_) = blocked.reason {
+            if self.path.moves_parameters() {
+                parts.push("parameters move from the last values to those set".to_owned());
+            }
+        } else if self.path.moves_parameters() {
             parts.push(
                 "the mechanism does not exist for parameters between the last and those set"
                     .to_owned(),
@@ -71,6 +75,7 @@ impl MechanismModel {
                 "given up"
             }
             Reason::Singular(point) => &point.to_string(),
+            Reason::Stop(limit) => &limit.to_string(),
             Reason::Jump(driver) => {
                 let driver = &self.mechanism.drivers[driver.index()];
                 &format!("the motion of driver `{}` jumps", driver.name)

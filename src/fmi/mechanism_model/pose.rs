@@ -214,6 +214,10 @@ impl MechanismModel {
         if phase == Phase::Event {
             return self.commit_event(log);
         }
+        if !starting && self.hosts_freedoms() {
+            self.evaluate(false)?;
+            self.set_freshness(Freshness::Pose);
+        }
         self.refresh_pose(phase, log)?;
         if !starting {
             self.report_falls(log);
@@ -341,9 +345,9 @@ impl MechanismModel {
     fn find_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         match phase {
             Phase::Initialization => self.initialize(log)?,
-            Phase::Running => self.evaluate()?,
+            Phase::Running => self.evaluate(self.hosts_freedoms())?,
             Phase::Event => {
-                self.evaluate()?;
+                self.evaluate(false)?;
                 self.set_driver_rates_at_event();
             }
             Phase::Halted => self.restore_committed(),
@@ -397,13 +401,22 @@ impl MechanismModel {
         Ok(())
     }
 
-    /// Finds the pose for values set since the last commit, and commits nothing. In co-simulation
-    /// the standard forbids reading it without a step (4.2.4); biela answers as an extension.
+    /// Returns whether the host integrates freedoms of a mechanism with stops: its trial points may lie
+    /// beyond a stop, the points that it accepts may not.
+    fn hosts_freedoms(&self) -> bool {
+        self.interface == Interface::ModelExchange
+            && self.free.is_some()
+            && !self.mechanism.stops.is_empty()
+    }
+
+    /// Finds the pose for values set since the last commit, and commits nothing. A `trial` may lie
+    /// beyond stops. In co-simulation the standard forbids reading it without a step (4.2.4); biela
+    /// answers as an extension.
     ///
     /// # Errors
     ///
     /// [`Failure::Discarded`] if no continuous motion leads there.
-    fn evaluate(&mut self) -> Result<(), Failure> {
+    fn evaluate(&mut self, trial: bool) -> Result<(), Failure> {
         self.leave_committed();
         let (now, committed) = (self.course.time, self.course.committed.time);
         let (start, h) = match self.interface {
@@ -411,7 +424,10 @@ impl MechanismModel {
             Interface::CoSimulation => (now, 0.0),
         };
         self.set_path(start, h);
-        let followed = self.solver.track(&self.path);
+        let followed = match trial {
+            true => self.solver.track_through_stops(&self.path),
+            false => self.solver.track(&self.path),
+        };
         self.set_driver_rates(start, h, 1.0);
         match followed {
             Ok(progress) => {

@@ -10,6 +10,7 @@
 //! | `published` | Andrews' mechanism, the problems of the IFToMM library |
 //! | `invariance` | other freedoms, names, orders, places; time reversed |
 //! | `refused` | what has no inertia, what meets a dead point |
+//! | `stops` | weights that fall to a stop |
 //! | `state` | saved and restored |
 
 mod closed_form;
@@ -21,4 +22,5 @@ mod published;
 mod refused;
 mod run;
 mod state;
+mod stops;
 mod taylor;

@@ -1,0 +1,222 @@
+//! FMUs at stops.
+
+#![allow(
+    clippy::float_cmp,
+    reason = "values that are set come back to the last bit, and a pose that stays does"
+)]
+
+use std::sync::Arc;
+
+use biela::fmi::{
+    Category, CoSimulation, Error, Failure, Instance as FmiInstance, Interface, MechanismModel,
+    StepProgress, Version,
+};
+use biela::mechanism::Mechanism;
+
+use crate::clauses::{get, set, started, vr};
+use crate::common::log::Heard;
+use crate::common::{Instance, parse};
+
+/// A nut on a guide, with a wall at a place that the host may move.
+fn nut(source: &str) -> Arc<Mechanism> {
+    parse(&format!(
+        r#"
+format = 1
+name = "nut"
+[parameters]
+wall_place = {{ value = 0.12, unit = "m", tunable = true }}
+[ground.markers]
+S = [0, 0]
+[bodies.nut]
+mass = 1
+markers = {{ N = [0, 0] }}
+[joints]
+guide = {{ type = "translational", markers = ["ground.S", "nut.N"] }}
+[stops]
+wall = {{ of = "feed", max = "wall_place" }}
+{source}
+"#
+    ))
+}
+
+fn driven() -> Arc<Mechanism> {
+    nut("[drivers]\nfeed = { coordinate = \"x\", markers = [\"ground.S\", \"nut.N\"], start = 0 }")
+}
+
+fn instance(heard: &Heard, interface: Interface, version: Version) -> Instance {
+    let model = MechanismModel::new(driven(), interface).expect("it assembles");
+    FmiInstance::of_version(version, model, Box::new(heard.clone()), true)
+}
+
+/// A step of 0.1 s along 1 m/s from 0.05 m, held where it starts otherwise.
+fn go(instance: &mut Instance, time: f64, position: f64) -> Result<(), Error> {
+    set(instance, [("feed.position", position)]);
+    let reference = [vr(instance, "feed.position")];
+    instance
+        .set_real_input_derivatives(&reference, &[1], &[1.0])
+        .expect("legal");
+    instance.do_step(time, 0.1)
+}
+
+#[test]
+fn a_step_into_a_stop_is_discarded_with_its_name_and_time() {
+    let heard = Heard::default();
+    let mut instance = started(instance(&heard, Interface::CoSimulation, Version::Fmi2));
+    go(&mut instance, 0.0, 0.0).expect("0.1 m is inside");
+    let error = go(&mut instance, 0.1, 0.1).expect_err("0.2 m is not");
+    assert!(matches!(error, Error::Model(Failure::Discarded(_))));
+    assert_eq!(
+        heard.take(Category::Warning),
+        [
+            "stop `wall` reached: feed = 0.120000000 m, after 0.2000 of the step from 0.1 s over \
+             0.1 s: driver `feed` was asked for 0.200000000 m and cannot go beyond 0.120000000 m"
+        ]
+    );
+    // Rounding of 0.12 m at 1 m/s.
+    assert!((instance.last_successful_time() - 0.12).abs() < 1e-13);
+    let [x] = get(&mut instance, ["nut.x"]);
+    assert!((x - 0.12).abs() < 1e-13);
+}
+
+#[test]
+fn a_master_that_goes_back_rests_at_the_stop_and_leaves_it() {
+    let heard = Heard::default();
+    let mut instance = started(instance(&heard, Interface::CoSimulation, Version::Fmi2));
+    set(&mut instance, [("feed.position", 0.12)]);
+    instance
+        .do_step(0.0, 0.1)
+        .expect("it goes to the stop itself");
+    instance.do_step(0.1, 0.1).expect("it rests there");
+    let at_stop = instance.fmu_state().expect("legal");
+    set(&mut instance, [("feed.position", 0.13)]);
+    instance.do_step(0.2, 0.1).expect_err("it is beyond");
+    assert_eq!(get(&mut instance, ["nut.x"]), [0.12]);
+    instance.set_fmu_state(&at_stop).expect("its own");
+    assert_eq!(get(&mut instance, ["nut.x"]), [0.12]);
+    set(&mut instance, [("feed.position", 0.07)]);
+    instance.do_step(0.2, 0.1).expect("it leads inward");
+    assert_eq!(get(&mut instance, ["nut.x"]), [0.07]);
+    // Another instance goes on from the state in the same way.
+    let bytes = instance.serialize_fmu_state(&at_stop).expect("legal");
+    let mut other = started(self::instance(
+        &heard,
+        Interface::CoSimulation,
+        Version::Fmi2,
+    ));
+    let read = other.deserialize_fmu_state(&bytes).expect("its own");
+    other.set_fmu_state(&read).expect("the same mechanism");
+    set(&mut other, [("feed.position", 0.1200001)]);
+    other.do_step(0.2, 0.1).expect_err("it is beyond");
+}
+
+#[test]
+fn a_wall_that_moves_meets_the_nut() {
+    let heard = Heard::default();
+    let mut instance = started(instance(&heard, Interface::CoSimulation, Version::Fmi2));
+    set(&mut instance, [("feed.position", 0.1)]);
+    instance.do_step(0.0, 0.1).expect("it is inside");
+    let before = instance.fmu_state().expect("legal");
+    set(&mut instance, [("wall_place", 0.08)]);
+    instance
+        .do_step(0.1, 0.1)
+        .expect_err("the wall meets the nut");
+    let [warning] = &heard.take(Category::Warning)[..] else {
+        panic!("one message")
+    };
+    assert!(
+        warning.starts_with("stop `wall` reached: feed = 0.100000000 m, after 0.5000 of the step"),
+        "{warning}"
+    );
+    instance.set_fmu_state(&before).expect("its own");
+    set(
+        &mut instance,
+        [("wall_place", 0.08), ("feed.position", 0.05)],
+    );
+    instance.do_step(0.1, 0.1).expect("the nut makes way");
+}
+
+#[test]
+fn a_start_beyond_a_stop_is_refused() {
+    let heard = Heard::default();
+    let mut instance = instance(&heard, Interface::CoSimulation, Version::Fmi2);
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    set(&mut instance, [("feed.position", 0.2)]);
+    let error = instance
+        .exit_initialization_mode()
+        .expect_err("it is beyond");
+    let message = error.to_string();
+    let expected = "the start pose is beyond stop `wall`: feed = 0.200000000 m is above its `max` = 0.120000000 m";
+    assert!(message.contains(expected), "{message}");
+}
+
+#[test]
+fn a_step_returns_early_at_a_stop() {
+    let heard = Heard::default();
+    let mut instance = instance(&heard, Interface::CoSimulation, Version::Fmi3);
+    instance
+        .agree(CoSimulation {
+            event_mode_used: true,
+            early_return_allowed: true,
+            ..CoSimulation::default()
+        })
+        .expect("legal");
+    let extrapolation = vr(&instance, "extrapolation");
+    instance.set_integer(&[extrapolation], &[2]).expect("legal");
+    instance
+        .enter_initialization_mode_at(0.0, None)
+        .expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
+    instance.enter_step_mode().expect("legal");
+    set(
+        &mut instance,
+        [("feed.position", 0.0), ("feed.velocity", 0.5)],
+    );
+    let progress = instance.begin_step(0.0, 1.0).expect("it returns early");
+    let StepProgress::Done(outcome) = progress else {
+        panic!("{progress:?}")
+    };
+    assert!(
+        outcome.early_return && outcome.event_handling_needed,
+        "{outcome:?}"
+    );
+    // 0.5 m/s from 0: the rounding of 0.12 m.
+    assert!(
+        (outcome.last_successful_time - 0.24).abs() < 1e-13,
+        "{outcome:?}"
+    );
+    assert_eq!(heard.take(Category::Error).len(), 0);
+    let [x] = get(&mut instance, ["nut.x"]);
+    assert!((x - 0.12).abs() < 1e-13, "{x}");
+}
+
+/// The host of model exchange integrates through the stop; where it accepts a point beyond, the
+/// simulation ends.
+#[test]
+fn model_exchange_ends_behind_a_stop() {
+    let free = "[freedoms]\nfeed = { coordinate = \"x\", markers = [\"ground.S\", \"nut.N\"], start = 0, \
+                velocity = 1 }";
+    let heard = Heard::default();
+    let model = MechanismModel::new(nut(free), Interface::ModelExchange).expect("it assembles");
+    let mut instance = started(FmiInstance::new(model, Box::new(heard.clone()), true));
+    for (time, place, ends) in [(0.1, 0.1, false), (0.2, 0.2, true)] {
+        instance.set_time(time).expect("legal");
+        instance
+            .set_continuous_states(&[place, 1.0])
+            .expect("legal");
+        // A trial point beyond has derivatives.
+        let derivatives: Vec<f64> = (instance.derivatives_of_states(2).expect("known")).collect();
+        assert_eq!(derivatives, [1.0, 0.0]);
+        let completed = instance.completed_integrator_step().expect("legal");
+        assert_eq!(completed.must_end, ends);
+    }
+    let [message] = &heard.take(Category::Error)[..] else {
+        panic!("one message")
+    };
+    assert!(
+        message.starts_with(
+            "t = 0.2 s: the simulation must end: stop `wall` reached: feed = 0.120000000 m"
+        ),
+        "{message}"
+    );
+}
