@@ -82,6 +82,7 @@ static TEMPLATES: &[Template] = &[
     template!("hart_inversor"),
     template!("hatch"),
     template!("jansen_leg"),
+    template!("latch"),
     template!("loader"),
     template!("pantograph"),
     template!("parallelogram"),
