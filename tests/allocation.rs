@@ -129,6 +129,24 @@ fn a_cycle_of_set_step_and_get_allocates_nothing() {
     }
 }
 
+/// Steps from one stop to the other and back, up to where one is touched.
+#[test]
+fn steps_beside_stops_allocate_nothing() {
+    let mut instance = silent("latch");
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
+    let strike = (0.02_f64 / 0.03).asin();
+    let count = allocations(|| {
+        for (step, angle) in (0..).zip([0.3, strike, strike, 0.7, -0.69, 0.729, strike, 0.0]) {
+            instance.set_real(&[1], &[angle]).expect("legal");
+            let t = 0.1 * f64::from(step);
+            instance.do_step(t, 0.1).expect("it is no further");
+        }
+    });
+    assert_eq!(count, 0);
+}
+
 /// Steps of FMI 3.0 with and without early return, and events between them.
 #[test]
 fn steps_and_events_of_fmi_3_allocate_nothing() {

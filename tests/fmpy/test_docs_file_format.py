@@ -21,6 +21,8 @@ TABLES = {
     "Pulleys": ("[joints.r]\ntype = 'rope'\nmarkers = [{ NONE }, 'ground.O']", "the pulley"),
     "Constraints": ("[constraints.c]\nNONE", "constraint `c`"),
     "Drivers": ("[drivers.d]\nNONE", "driver `d`"),
+    "Stops of a measure or driver": ("[stops.s]\nof = 'd'\nNONE", "stop `s`"),
+    "Stops of any coordinate": ("[stops.r]\ncoordinate = 'angle'\nNONE", "stop `r`"),
     "Measures": ("[measures.m]\nNONE", "measure `m`"),
     "Computed measures": ("[measures.n]\nvalue = 1\nNONE", "measure `n`"),
     "Forces along a coordinate": ("[forces.f]\ncoordinate = 'angle'\nNONE", "force `f`"),
@@ -126,6 +128,8 @@ def test_required_keys(answers, heading):
     given = {"Joints": "type", "Forces along a coordinate": "coordinate"}
     given["Forces at a marker"] = "marker"
     given["Computed measures"] = "value"
+    given["Stops of a measure or driver"] = "of"
+    given["Stops of any coordinate"] = "coordinate"
     known = missed(answers, TABLES[heading][1]) | ({given[heading]} if heading in given else set())
     assert required == known
 

@@ -1,11 +1,12 @@
 //! Stops end a motion where a closed form says so.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_3, PI, TAU};
 use std::sync::Arc;
 
 use proptest::prelude::*;
 
 use crate::common::{assembled, parse, straight_to};
+use crate::generated::{Ground, chain};
 use biela::kinematics::{
     Blocked, Curve, End, Error, Path, RangeSettings, Reason, Solver, StopLimit,
 };
@@ -384,6 +385,50 @@ turn = {{ coordinate = "angle", markers = ["ground.O", "crank.O"], start = {star
 pin = {{ coordinate = "angle", markers = ["ground.C", "rocker.C"], {stop} }}
 "#
     ))
+}
+
+/// Bounds of unknowns add up along a chain: beside a stop of its last rocker the rounding in them
+/// neither ends the motion nor shortens sub-steps without end.
+#[test]
+fn a_long_chain_rests_at_a_stop_and_leaves_it() {
+    for loops in [1, 30, 300] {
+        let limit = rocker_at(1.6);
+        let key = if limit > rocker_at(FRAC_PI_3) {
+            "max"
+        } else {
+            "min"
+        };
+        let text = chain(loops, Ground::Zigzag);
+        let mechanism = parse(&format!(
+            "{text}\n[stops]\nlast = {{ coordinate = \"angle\", \
+             markers = [\"ground.O{loops}\", \"rocker_{loops}.O\"], {key} = {limit:.17} }}\n"
+        ));
+        let (mut solver, mut path) = assembled(&mechanism);
+        let blocked = go(&mut solver, &mut path, 2.0).expect_err("the stop is on the way");
+        assert_eq!(stop_of(&blocked).stop, "last");
+        println!(
+            "{loops}: {:e}, {:?}",
+            angle(&solver) - 1.6,
+            blocked.progress
+        );
+        // Each loop adds a few roundings.
+        let place = 1e-14 * (10.0 + loops as f64);
+        assert!(
+            (angle(&solver) - 1.6).abs() < place,
+            "{}",
+            angle(&solver) - 1.6
+        );
+        let here = angle(&solver);
+        go(&mut solver, &mut path, here).expect("it rests");
+        let inward = solver.track_or_give_up(&path);
+        assert!(inward.is_ok(), "it rests");
+        straight_to(&solver, &mut path, here - 0.01);
+        let progress = solver.track(&path).expect("it leads inward");
+        println!("{loops}: inward {progress:?}");
+        assert!(progress.substeps < 100, "{progress:?}");
+        go(&mut solver, &mut path, 2.0).expect_err("the stop is on the way");
+        assert!((angle(&solver) - 1.6).abs() < place);
+    }
 }
 
 proptest! {

@@ -29,10 +29,17 @@ const AT_LIMIT: f64 = 64.0 * f64::EPSILON;
 /// Deviation from a straight line up to which a gap runs straight over a sub-step, in the same scale.
 /// Between the ends of a sub-step a motion may go beyond a limit by twice as much.
 ///
-/// Above the rounding in the bounds of unknowns, which no shorter sub-step takes away. Halved, that
-/// rounding may end the motion next to a limit in mechanisms of hundreds of bodies. Doubled, a
-/// motion may graze a limit twice as deep.
+/// Above the rounding in the bounds of unknowns of most mechanisms, which no shorter sub-step takes
+/// away. Halved, more of them have to find that rounding by trial. Doubled, a motion may graze a
+/// limit twice as deep.
 const STRAIGHT: f64 = 32.0 * AT_LIMIT;
+
+/// Largest deviation that counts as rounding, in the same scale, where it shrinks more slowly than
+/// the sub-step: in long chains the roundings of all bodies add up.
+///
+/// Some hundred times that of a chain of a thousand bodies. Halved or doubled, mechanisms of another
+/// number of bodies take very short sub-steps beside a limit.
+const LARGEST_ROUNDING: f64 = 1e-10;
 
 /// Shortest sub-step towards a limit, as a part of the path: a few roundings of a place on it.
 const SHORTEST: f64 = 2e-15;
@@ -40,6 +47,9 @@ const SHORTEST: f64 = 2e-15;
 /// Safety factor on the deviation at the end of the next sub-step: the bound of a shorter one need
 /// not shrink quite as its square.
 const SAFETY: f64 = 1.5;
+
+/// The entry for a stop before a first sub-step: all shrinks faster.
+const NOT_TRIED: [f64; 2] = [1.0, f64::INFINITY];
 
 /// The watch over the limits of all stops along a path.
 #[derive(Debug, Default)]
@@ -50,6 +60,11 @@ pub(super) struct StopWatch {
     /// Their least and largest values at both places.
     limits_here: Vec<[f64; 2]>,
     limits_ahead: Vec<[f64; 2]>,
+    /// Length of the last sub-step tried from the pose, and the deviation of each stop's coordinate
+    /// over it.
+    tried: Vec<[f64; 2]>,
+    /// Twice the rounding in the deviations, as far as it has shown.
+    rounding: Vec<f64>,
     /// The limit that the motion comes to.
     target: Option<Target>,
     /// The place on the path beyond which the next sub-step must not end.
@@ -78,8 +93,10 @@ struct Gap {
     ends: [f64; 2],
     /// Largest deviation from the straight line between them.
     deviation: f64,
-    /// The coordinate's scale factor.
-    scale: f64,
+    /// Gap up to which the pose is at the limit.
+    at_limit: f64,
+    /// Deviation up to which the gap runs straight.
+    straight: f64,
 }
 
 /// The verdict on a sub-step.
@@ -96,9 +113,12 @@ enum Verdict {
 impl Gap {
     /// Judges a sub-step of length `h`.
     fn judge(&self, h: f64) -> Verdict {
-        let [before, after] = self.ends;
-        let at_limit = AT_LIMIT * self.scale;
-        let straight = STRAIGHT * self.scale;
+        let Self {
+            ends: [before, after],
+            at_limit,
+            straight,
+            ..
+        } = *self;
         let is_shortest = h <= 1.5 * SHORTEST;
         let deviation = if is_shortest { 0.0 } else { self.deviation };
         // From beyond the limit every way back is open.
@@ -118,12 +138,12 @@ impl Gap {
             before / slope
         } else if before <= at_limit {
             // Short enough to tell whether the motion leads out.
-            0.9 * h * (straight / deviation).sqrt()
+            0.5 * h * (straight / deviation).sqrt()
         } else {
-            reach(before, slope, deviation / (h * h))
+            // So much shorter that rounding shows.
+            reach(before, slope, deviation / (h * h)).min(0.7 * h)
         };
-        // A sub-step that was not clear gets shorter.
-        Verdict::Shorter(part.min(0.9 * h).max(SHORTEST))
+        Verdict::Shorter(part.max(SHORTEST))
     }
 }
 
@@ -142,6 +162,8 @@ impl StopWatch {
             ahead: vec![0.0; stops],
             limits_here: vec![[0.0; 2]; stops],
             limits_ahead: vec![[0.0; 2]; stops],
+            tried: vec![NOT_TRIED; stops],
+            rounding: vec![0.0; stops],
             target: None,
             most: f64::INFINITY,
         }
@@ -156,6 +178,7 @@ impl StopWatch {
     /// Begins a path at the pose.
     pub(super) fn begin(&mut self, compiled: &CompiledMechanism, state: &State) {
         (self.target, self.most) = (None, f64::INFINITY);
+        self.rounding.fill(0.0);
         self.look(compiled, state, &state.pose.parameters);
         self.arrive();
     }
@@ -174,6 +197,16 @@ impl StopWatch {
     fn arrive(&mut self) {
         std::mem::swap(&mut self.here, &mut self.ahead);
         std::mem::swap(&mut self.limits_here, &mut self.limits_ahead);
+        self.tried.fill(NOT_TRIED);
+    }
+
+    /// Notes a deviation over a sub-step of length `h`. One that shrinks more slowly than the sub-step
+    /// is rounding.
+    fn note_rounding(&mut self, stop: usize, h: f64, deviation: f64, scale: f64) {
+        let [length, last] = std::mem::replace(&mut self.tried[stop], [h, deviation]);
+        if deviation > 1.4 * last * (h / length) && deviation <= LARGEST_ROUNDING * scale {
+            self.rounding[stop] = self.rounding[stop].max(2.0 * deviation);
+        }
     }
 
     /// Judges the sub-step from `start` to `end` of the path, at whose end the bodies are and these
@@ -196,6 +229,8 @@ impl StopWatch {
         let mut shortest = f64::INFINITY;
         for stop in 0..self.here.len() {
             let deviation = deviation(compiled, state, stop, bounds);
+            let scale = self.scale(compiled, state, stop);
+            self.note_rounding(stop, h, deviation, scale);
             for is_max in [false, true] {
                 let limit = Limit { stop, is_max };
                 if self.limits_here[stop][usize::from(is_max)].is_infinite() {
@@ -204,7 +239,8 @@ impl StopWatch {
                 let gap = Gap {
                     ends: self.gaps(limit),
                     deviation: deviation + limit_deviation(compiled, limit, bounds),
-                    scale: self.scale(compiled, state, stop),
+                    at_limit: AT_LIMIT * scale,
+                    straight: self.rounding[stop].max(STRAIGHT * scale),
                 };
                 match gap.judge(h) {
                     Verdict::Clear => {}

@@ -93,6 +93,12 @@ impl<'a> Context<'a> {
 
     /// Reports a name of neither a measure that is a coordinate nor a driver.
     fn no_such_coordinate(&mut self, mechanism: &Mechanism, name: &str, span: &Span) {
+        if mechanism.derived.iter().any(|measure| measure.name == name) {
+            let message = format!("{} is a computed measure", quoted(name));
+            self.error(code::UNKNOWN_COORDINATE, span.clone(), message)
+                .suggest("a stop limits a coordinate: name one that the measure is computed from");
+            return;
+        }
         let measures = mechanism.measures.iter().map(|measure| &measure.name);
         let drivers = mechanism.drivers.iter().map(|driver| &driver.name);
         let candidates: Vec<&str> = measures.chain(drivers).map(String::as_str).collect();
