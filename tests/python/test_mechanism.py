@@ -95,6 +95,17 @@ def test_the_range_of_a_triangle_ends_at_dead_points(mechanism):
     assert "body `arm` and body `rod` line up" in found.lower.text
 
 
+def test_a_range_ends_at_stops(mechanism):
+    """The bolt is 0.03 m times the sine of the handle's angle from its middle place."""
+    latch = mechanism("latch")
+    found = latch.range("handle_angle")
+    assert found.lower.kind == found.upper.kind == "stop"
+    assert_allclose([found.lower.value, found.upper.value], [np.radians(-40), np.arcsin(2 / 3)])
+    assert "stop `strike` reached: throw = 0.020000000 m" in found.upper.text
+    with pytest.raises(biela.Error, match="stop `strike` reached"):
+        latch.run({"handle_angle": "t"}, stop=1)
+
+
 def test_a_range_has_the_extremes_of_measures(four_bar):
     """Coupler and rocker span 0.3 m or 0.5 m where the crank lies along the base."""
     found = four_bar.range("crank_angle")

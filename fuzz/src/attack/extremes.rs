@@ -163,7 +163,10 @@ fn value_of(end: &End, driver: DriverId, start: f64) -> Option<f64> {
     match end {
         End::Turns(turns) => Some(start + f64::from(*turns) * TAU),
         End::Singular(point) => Some(point.drivers[driver.index()]),
-        End::Blocked { value, .. } | End::Bound { value } | End::NotFound { value } => Some(*value),
+        End::Stop { value, .. }
+        | End::Blocked { value, .. }
+        | End::Bound { value }
+        | End::NotFound { value } => Some(*value),
     }
 }
 

@@ -83,6 +83,30 @@ fn a_grip_is_the_same_point_of_the_body() {
     assert!((x - CRANK).abs() < 1e-15 && y.abs() < 1e-15);
 }
 
+// The bolt is 0.03 m times the sine of the handle's angle from its middle place.
+#[test]
+fn a_bolt_stops_at_its_strike_plate() {
+    let mut session = open(include_str!("../../../mechanisms/latch.toml"));
+    let Outcome::Stopped(obstacle) = session.drive(DriverId(0), 1.0) else {
+        panic!("the strike plate is in the way")
+    };
+    let start = "stop `strike` reached: throw = 0.020000000 m: the mechanism cannot go on, with \
+                 `handle_angle` at 0.729727656 rad";
+    assert!(obstacle.message.starts_with(start), "{}", obstacle.message);
+    let [x, y] = obstacle.at.expect("it has a place");
+    assert!((x - 0.08).abs() < 1e-14 && (y + 0.03).abs() < 1e-14);
+    let angle = session.pose().drivers[0];
+    assert!((angle - (2.0_f64 / 3.0).asin()).abs() < 1e-12);
+    // A strike plate that moves into the bolt is refused with the same reason.
+    let reach = parameter(&session, "reach");
+    let Outcome::Refused(obstacle) = session.set(reach, 0.01, false) else {
+        panic!("the bolt is in the way")
+    };
+    assert!(obstacle.message.starts_with("stop `strike` reached"));
+    assert_eq!(session.drive(DriverId(0), 0.0), Outcome::Reached);
+    assert_eq!(session.set(reach, 0.01, false), Outcome::Reached);
+}
+
 #[test]
 fn a_rocker_that_drives_stops_at_its_dead_point() {
     let crank = r#"crank_angle = { coordinate = "angle", markers = ["ground.O2", "crank.O"], start = "60*deg" }"#;

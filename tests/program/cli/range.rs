@@ -104,6 +104,31 @@ fn range_tells_the_limits() {
     }
 }
 
+/// The handle's angle there is the arcsine of 2/3.
+#[test]
+fn range_and_run_end_at_stops() {
+    let limits = biela(&["range", "mechanisms/latch.toml"]).success();
+    for wanted in [
+        "  down to -40 deg: stop `rose` reached: handle_angle = -0.698131701 rad (-40.000000 deg)\n",
+        "  up to   41.8103148958 deg: stop `strike` reached: throw = 0.020000000 m\n",
+    ] {
+        assert!(stdout(&limits).contains(wanted), "{}", stdout(&limits));
+    }
+    let drive = [
+        "--drive",
+        "handle_angle = t",
+        "--stop",
+        "1",
+        "--step",
+        "0.5",
+    ];
+    let run = biela(&[&["run", "mechanisms/latch.toml"], &drive[..]].concat()).code(1);
+    assert_eq!(column(&stdout(&run), "time").last(), Some(&0.5));
+    let message = "error: mechanisms/latch.toml: stop `strike` reached: throw = 0.020000000 m at \
+                   t = 0.729727656 s: the mechanism cannot go on, with `handle_angle` at";
+    assert!(stderr(&run).starts_with(message), "{}", stderr(&run));
+}
+
 #[test]
 fn a_range_without_poses_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
