@@ -75,6 +75,7 @@ PARTS = {
     "the estimate of body `…`": "… has no finite value",
     "an equation of the mechanism": "… has no finite value",
     "the radius of joint `…`": "… has no finite value",
+    "a limit of stop `…`": "… has no finite value",
     "a wheel's size in joint `…`": "… has no finite value",
     "a pulley's radius in joint `…`": "… has no finite value",
     "a number of parts in joint `…`": "… has no finite value",
