@@ -78,8 +78,8 @@ pub enum Error {
         /// The largest value \[m or rad\].
         max: f64,
     },
-    /// A pose at which a motion is to start is beyond a stop.
-    #[error("the start pose is beyond stop `{}`: {}", .limit.stop, .limit.describe_beyond(*.value))]
+    /// A pose at which a motion is to start is beyond a stop, or beyond the end of a curve.
+    #[error("the start pose is {}", .limit.describe_beyond(*.value))]
     BeyondStop {
         /// The limit.
         limit: Box<StopLimit>,

@@ -504,13 +504,6 @@ impl Solver {
         forces.effort_rounding(&self.state, rates, driver)
     }
 
-    /// Returns the joints that are open curves, each with the part of the curve that is before its
-    /// point: from 0 to 1 unless the point is beyond the ends.
-    pub fn parts_of_curves(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let curves = self.compiled.system.curves();
-        curves.filter_map(|(joint, curve)| Some((joint, curve.part_before(&self.state.at)?)))
-    }
-
     /// Returns the pulleys that ropes begin to leave at the present pose, and sets in `off`, one entry
     /// per [pulley](Mechanism::pulleys), which ones they have left.
     pub fn off_pulleys<'a>(&'a self, off: &'a mut [bool]) -> impl Iterator<Item = OffPulley<'a>> {

@@ -1,19 +1,19 @@
-//! A limit of a stop, for messages.
+//! A limit of a stop, or the end of a curve, for messages.
 
 use std::fmt;
 
 use crate::mechanism::{CoordinateKind, Stop};
 
-/// One of the two limits of a [`Stop`], with the value that it has.
+/// One of the two limits of a [`Stop`], or one of the two ends of an open curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StopLimit {
-    /// Name of the stop.
+    /// Name of the stop, or of the joint with the curve.
     pub stop: String,
     /// The coordinate's word, or the measure or driver whose coordinate it is.
     pub subject: String,
-    /// Kind of the coordinate.
-    pub kind: CoordinateKind,
-    /// Whether it is the largest value, not the least one.
+    /// Kind of the coordinate, `None` for a place on a curve.
+    pub kind: Option<CoordinateKind>,
+    /// Whether it is the largest value or the last end, not the least value or the first end.
     pub is_max: bool,
     /// The limit \[m or rad\].
     pub value: f64,
@@ -25,26 +25,47 @@ impl StopLimit {
         Self {
             stop: stop.name.clone(),
             subject: stop.subject().to_owned(),
-            kind: stop.coordinate.kind,
+            kind: Some(stop.coordinate.kind),
             is_max,
             value,
         }
     }
 
-    /// Describes a value beyond the limit.
+    /// Makes an end of the curve of a joint, with the curve's own variable there.
+    pub(in crate::kinematics) fn of_curve(joint: &str, is_max: bool, value: f64) -> Self {
+        Self {
+            stop: joint.to_owned(),
+            subject: String::new(),
+            kind: None,
+            is_max,
+            value,
+        }
+    }
+
+    /// Describes a start pose whose coordinate is at a value beyond the limit.
     pub(in crate::kinematics) fn describe_beyond(&self, value: f64) -> String {
-        let [value, limit] = self.kind.show_apart(value, self.value);
+        let Some(kind) = self.kind else {
+            let end = if self.is_max { "last" } else { "first" };
+            return format!("beyond the {end} end of the curve of joint `{}`", self.stop);
+        };
+        let [value, limit] = kind.show_apart(value, self.value);
         let (side, key) = match self.is_max {
             true => ("above", "max"),
             false => ("below", "min"),
         };
-        format!("{} = {value} is {side} its `{key}` = {limit}", self.subject)
+        format!(
+            "beyond stop `{}`: {} = {value} is {side} its `{key}` = {limit}",
+            self.stop, self.subject
+        )
     }
 }
 
 impl fmt::Display for StopLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value = self.kind.show(self.value);
+        let Some(kind) = self.kind else {
+            return write!(f, "the curve of joint `{}` ends here", self.stop);
+        };
+        let value = kind.show(self.value);
         write!(
             f,
             "stop `{}` reached: {} = {value}",

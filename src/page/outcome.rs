@@ -95,16 +95,17 @@ impl Obstacle {
     }
 }
 
-/// Returns the point to which a stop measures.
+/// Returns the point to which a stop measures, or which is on a curve.
 fn place_of_stop(limit: &StopLimit, solver: &Solver) -> Option<[f64; 2]> {
-    let mut stops = solver.mechanism().stops.iter();
-    let stop = stops.find(|stop| stop.name == limit.stop)?;
+    let mechanism = solver.mechanism();
+    let stops = mechanism
+        .stops
+        .iter()
+        .map(|stop| (&stop.name, stop.coordinate.to));
+    let joints = mechanism.joints.iter().map(|joint| (&joint.name, joint.to));
+    let (_, marker) = stops.chain(joints).find(|(name, _)| **name == limit.stop)?;
     let none = Rates::new(solver.pose().q.len());
-    Some(
-        solver
-            .marker(stop.coordinate.to, &none)
-            .map(|jet| jet.value),
-    )
+    Some(solver.marker(marker, &none).map(|jet| jet.value))
 }
 
 /// Returns the place of things that messages name as joint `A` or body `rod`: a joint that is

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::common::{assembled, parse, shipped, straight_to};
 use biela::kinematics::{
-    Direction, Error, Fit, Output, OutputSource, Path, Reason, Solution, Solver,
+    Curve, Direction, Error, Fit, Output, OutputSource, Path, Reason, Solution, Solver,
 };
 use biela::mechanism::{Jet, Mechanism, ParameterId, Signal};
 
@@ -159,6 +159,32 @@ fn a_motion_stops_where_a_law_jumps() {
     straight_to(&solver, &mut path, 2.0);
     solver.track(&path).expect("a corner is no jump");
     assert!((solver.pose().q[5] - 1.25 / 4.0).abs() < 1e-15);
+}
+
+/// Parts of an equation that jump in opposite ways at different times do not cancel, even where a step
+/// passes both.
+#[test]
+fn jumps_of_two_coordinates_do_not_cancel() {
+    let text = "format = 1\nname = 'floors'\nground.markers = { A = [0, 0], B = [1, 0], C = [2, 0] }\n\
+        bodies.first.markers = { A = [0, 0] }\nbodies.second.markers = { B = [0, 0] }\n\
+        bodies.third.markers = { C = [0, 0] }\n[joints]\n\
+        A = { type = 'revolute', markers = ['ground.A', 'first.A'] }\n\
+        B = { type = 'revolute', markers = ['ground.B', 'second.B'] }\n\
+        C = { type = 'revolute', markers = ['ground.C', 'third.C'] }\n\
+        tie = { type = 'coupling', equation = 'c = 0.1*(floor(a) - floor(b))' }\n[drivers]\n\
+        a = { coordinate = 'angle', markers = ['ground.A', 'first.A'], start = 0.9 }\n\
+        b = { coordinate = 'angle', markers = ['ground.B', 'second.B'], start = 1.1 }\n\
+        [measures]\nc = { coordinate = 'angle', markers = ['ground.C', 'third.C'] }\n";
+    let (mut solver, mut path) = assembled(&parse(text));
+    for (curve, [from, to]) in path.curves.iter_mut().zip([[0.9, 1.1], [1.1, 0.9]]) {
+        *curve = Curve::Input {
+            position: from,
+            velocity: 0.0,
+            acceleration: 0.0,
+            jump: to - from,
+        };
+    }
+    solver.track(&path).expect_err("both jump half-way");
 }
 
 /// A parameter that moves in a step moves the second arm; its derivative is that of the function.

@@ -1,9 +1,10 @@
 //! Points on curves: carriages, parallel curves, and parameters that move.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
-use biela::kinematics::Rates;
-use biela::mechanism::Jet;
+use biela::kinematics::{Error, Path, Rates, Reason, Solver};
+use biela::mechanism::{Jet, Mechanism};
 
 use crate::common::{assembled, parse, shipped, straight_to};
 
@@ -94,25 +95,38 @@ fn a_groove_that_changes_at_once_ends_at_the_closed_form() {
     }
 }
 
-/// The part of an open curve that is before its point tells where its ends are.
+/// A bead on an open curve, which is straight from x = -1 to 1.
+fn bead(start: f64) -> Arc<Mechanism> {
+    parse(&format!(
+        "format = 1\nname = 'end'\nground.markers = {{ C = [0, 0] }}\n\
+         bodies.bead = {{ markers = {{ B = [0, 0] }}, estimate = [{start}, 0, 0] }}\n[joints]\n\
+         track = {{ type = 'curve', markers = ['ground.C', 'bead.B'], \
+         points = {{ table = [[-1, 0], [1, 0]] }} }}\n[drivers]\n\
+         x = {{ coordinate = 'x', markers = ['ground.C', 'bead.B'], start = {start} }}\n\
+         phi = {{ coordinate = 'angle', markers = ['ground.C', 'bead.B'], start = 0 }}\n"
+    ))
+}
+
+/// A motion ends where the curve does, to rounding, and goes back from there; a start beyond an end is
+/// refused.
 #[test]
-fn a_start_beyond_the_end_of_a_curve_is_told() {
-    for (start, expected) in [(0.3_f64, 0.65), (1.2, 1.1), (-1.5, -0.25)] {
-        let mechanism = parse(&format!(
-            "format = 1\nname = 'end'\nground.markers = {{ C = [0, 0] }}\n\
-             bodies.bead = {{ markers = {{ B = [0, 0] }}, estimate = [{start}, 0, 0] }}\n[joints]\n\
-             track = {{ type = 'curve', markers = ['ground.C', 'bead.B'], \
-             points = {{ table = [[-1, 0], [1, 0]] }} }}\n[drivers]\n\
-             x = {{ coordinate = 'x', markers = ['ground.C', 'bead.B'], start = {start} }}\n\
-             phi = {{ coordinate = 'angle', markers = ['ground.C', 'bead.B'], start = 0 }}\n"
-        ));
-        let (solver, _) = assembled(&mechanism);
-        let parts: Vec<_> = solver.parts_of_curves().collect();
-        let [(0, part)] = parts[..] else {
-            panic!("{parts:?}")
+fn a_motion_ends_at_the_end_of_a_curve() {
+    for (target, end) in [(1.7, 1.0), (-1.2, -1.0)] {
+        let (mut solver, mut path) = assembled(&bead(0.3));
+        straight_to(&solver, &mut path, target);
+        let blocked = solver.track(&path).expect_err("the curve ends");
+        let Reason::Stop(limit) = &blocked.reason else {
+            panic!("{blocked:?}");
         };
-        assert!((part - expected).abs() < 1e-14, "{part}");
-        let warned = solver.geometry_warnings().len();
-        assert_eq!(warned, usize::from(!(0.0..=1.0).contains(&part)));
+        assert_eq!(limit.to_string(), "the curve of joint `track` ends here");
+        let x = solver.pose().drivers[0];
+        assert!((x - end).abs() < 1e-13, "{x}");
+        straight_to(&solver, &mut path, 0.0);
+        solver.track(&path).expect("it goes back");
+    }
+    for start in [1.2, -1.5] {
+        let mechanism = bead(start);
+        let error = Solver::assembled(Arc::clone(&mechanism), &Path::new(&mechanism));
+        assert!(matches!(error, Err(Error::BeyondStop { .. })), "{error:?}");
     }
 }

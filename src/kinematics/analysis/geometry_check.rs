@@ -68,11 +68,6 @@ pub enum GeometryWarningKind {
         /// First and last polar angle of each part that is not convex \[rad\].
         ranges: Vec<[f64; 2]>,
     },
-    /// A point on an open curve is beyond its ends.
-    BeyondEnd {
-        /// Part of the curve that is before the point.
-        part: f64,
-    },
     /// A rope does not touch its pulley.
     OffPulley {
         /// Marker at the pulley's centre, with its body.
@@ -126,10 +121,6 @@ impl fmt::Display for GeometryWarning {
                 f,
                 "a flat face cannot follow the contour where it is hollow: {}",
                 degrees(ranges)
-            ),
-            GeometryWarningKind::BeyondEnd { part } => write!(
-                f,
-                "the curve ends before its point: its parameter, from 0 to 1, is {part:.3}"
             ),
             GeometryWarningKind::OffPulley { pulley, angle } => write!(
                 f,
@@ -207,15 +198,6 @@ pub(in crate::kinematics) fn geometry_warnings(
         })
         .collect();
     let mechanism = compiled.system.mechanism();
-    for (joint, curve) in compiled.system.curves() {
-        let part = curve.part_before(&state.at);
-        if let Some(part) = part.filter(|part| !(-TOLERANCE..=1.0 + TOLERANCE).contains(part)) {
-            warnings.push(GeometryWarning {
-                joint: mechanism.joints[joint].name.clone(),
-                kind: GeometryWarningKind::BeyondEnd { part },
-            });
-        }
-    }
     let off = arcs(&compiled.system, state).filter(|(.., angle)| *angle < -TOLERANCE);
     warnings.extend(off.map(|(joint, marker, angle)| GeometryWarning {
         joint: mechanism.joints[joint].name.clone(),

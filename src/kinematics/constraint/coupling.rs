@@ -49,6 +49,8 @@ pub struct CoupledExpression {
     pub parameters: Vec<(ParameterId, CoefficientId)>,
     /// The table that it calls.
     pub law: Option<LawId>,
+    /// The place of the coordinate on which all parts that jump depend, if it is one.
+    pub jumps_by: Option<usize>,
 }
 
 impl CoupledExpression {
@@ -68,11 +70,11 @@ impl CoupledExpression {
     }
 }
 
-/// Width of a part in which pieces of a function may meet, as a part of a sub-step.
+/// Width of a part in which pieces of a function may meet, as a part of a coordinate's range.
 const SEAM: f64 = 1.0 / (1_u64 << 26) as f64;
 /// Change of a function across a seam that is rounding, relative to its value or one.
 const JUMP: f64 = 1e-9;
-/// Most parts that wait while a sub-step is halved down to [`SEAM`].
+/// Most parts that wait while a range is halved down to [`SEAM`].
 const MOST_PARTS: usize = 32;
 /// Most parts that are examined: those of some ten seams.
 const MOST_LOOKS: usize = 600;
@@ -106,6 +108,19 @@ impl<N: Number, C: Fn(CoefficientId) -> N, L: Fn(N) -> N> Values<N> for Inputs<'
     }
 }
 
+/// Returns the coefficients in force as ranges.
+fn enclosed_coefficient(at: &Configuration) -> impl Fn(CoefficientId) -> Enclosed {
+    |id| Enclosed::constant(at.coefficient(id))
+}
+
+/// Returns the laws in force on ranges.
+fn enclosed_law(at: &Configuration) -> impl Fn(LawId, Enclosed) -> Enclosed {
+    |law, argument| {
+        let law = at.law(law).enclosed.enclose(argument);
+        law.unwrap_or_else(Enclosed::unknown)
+    }
+}
+
 impl Coupling {
     /// Returns f for these coordinates.
     fn function<N: Number>(
@@ -135,58 +150,69 @@ impl Coupling {
         self.function(coordinates, coefficient, law)
     }
 
-    /// Encloses f for ranges of the coordinates with the parameters in force. Where pieces of it meet
-    /// with a jump, which are shown to join, the derivatives are those of all pieces.
-    fn enclosed(&self, at: &Configuration, coordinates: [Enclosed; MOST_COUPLED]) -> Enclosed {
-        let coefficient = |id| Enclosed::constant(at.coefficient(id));
-        let law = |law, argument| {
-            let law = at.law(law).enclosed.enclose(argument);
-            law.unwrap_or_else(Enclosed::unknown)
-        };
-        let enclosed = self.function(coordinates, coefficient, law);
-        match &self.function {
-            CoupledFunction::Expression(coupled) if !enclosed.first().is_finite() => {
-                let inputs = coupled.inputs(coordinates, coefficient, law);
-                let pieces = coupled.expression.enclose_all_pieces(&inputs);
-                let pieces = pieces.filter(|_| self.joins(at, coordinates.map(|s| s.value)));
-                pieces.unwrap_or(enclosed)
-            }
-            _ => enclosed,
-        }
+    /// Encloses f for ranges of the coordinates with the parameters in force. Derivatives across a jump
+    /// are not finite.
+    fn enclosed_at_once(
+        &self,
+        at: &Configuration,
+        coordinates: [Enclosed; MOST_COUPLED],
+    ) -> Enclosed {
+        self.function(coordinates, enclosed_coefficient(at), enclosed_law(at))
     }
 
-    /// Returns whether f is continuous between the lowest and the highest values of the coordinates:
-    /// halves each part that cannot be shown to be so, down to [`SEAM`], across which f must not
-    /// change by more than its slopes make it.
-    fn joins(&self, at: &Configuration, ranges: [Interval; MOST_COUPLED]) -> bool {
-        let place = |part: f64| ranges.map(|Interval { low, high }| low + part * (high - low));
+    /// Encloses f likewise; where parts of it jump and are shown to join, the derivatives are those of
+    /// all pieces.
+    fn enclosed(&self, at: &Configuration, coordinates: [Enclosed; MOST_COUPLED]) -> Enclosed {
+        let enclosed = self.enclosed_at_once(at, coordinates);
+        let CoupledFunction::Expression(coupled) = &self.function else {
+            return enclosed;
+        };
+        let Some(place) = coupled.jumps_by.filter(|_| !enclosed.first().is_finite()) else {
+            return enclosed;
+        };
+        let inputs = coupled.inputs(coordinates, enclosed_coefficient(at), enclosed_law(at));
+        let pieces = coupled.expression.enclose_all_pieces(&inputs);
+        let pieces = pieces.filter(|_| self.joins(at, coordinates.map(|s| s.value), place));
+        pieces.unwrap_or(enclosed)
+    }
+
+    /// Returns whether f is continuous where its parts jump, which depend on the coordinate at `place`
+    /// alone: from its lowest to its highest value, all others being at their lowest or highest.
+    fn joins(&self, at: &Configuration, ranges: [Interval; MOST_COUPLED], place: usize) -> bool {
+        let at_ends = |end: fn(Interval) -> f64| ranges.map(|range| Interval::point(end(range)));
+        let mut ways = [at_ends(|range| range.low), at_ends(|range| range.high)];
+        ways.iter_mut().all(|way| {
+            way[place] = ranges[place];
+            self.joins_along(at, way, place)
+        })
+    }
+
+    /// Returns whether f is continuous along the range of the coordinate at `place`: halves each part
+    /// that cannot be shown to be so, down to [`SEAM`], across which f must not change by more than
+    /// its slopes make it.
+    fn joins_along(
+        &self,
+        at: &Configuration,
+        ranges: &[Interval; MOST_COUPLED],
+        place: usize,
+    ) -> bool {
+        let Interval { low, high } = ranges[place];
+        let value = |part: f64| low + part * (high - low);
         let smooth = |[from, to]: [f64; 2]| {
-            let (from, to) = (place(from), place(to));
-            let mut numbers = [Enclosed::constant(0.0); MOST_COUPLED];
-            for (k, number) in numbers.iter_mut().enumerate() {
-                let way = Interval::point(to[k] - from[k]);
-                *number = Enclosed::linear(Interval::new(from[k], to[k]), way);
-            }
-            let coefficient = |id| Enclosed::constant(at.coefficient(id));
-            let law = |law, argument| {
-                let law = at.law(law).enclosed.enclose(argument);
-                law.unwrap_or_else(Enclosed::unknown)
-            };
-            self.function(numbers, coefficient, law).first().is_finite()
+            let mut numbers = ranges.map(Enclosed::fixed);
+            numbers[place] = Enclosed::variable(Interval::new(value(from), value(to)));
+            self.enclosed_at_once(at, numbers).first().is_finite()
         };
         let meets = |[from, to]: [f64; 2]| {
-            let rate = |k: usize| (ranges[k].high - ranges[k].low) * (to - from);
-            let at_end = |part: f64| {
-                let mut numbers = place(part).map(Jet::constant);
-                for (k, number) in numbers.iter_mut().enumerate() {
-                    *number = Jet::linear(number.value, rate(k));
-                }
+            let [before, after] = [from, to].map(|part| {
+                let mut numbers = ranges.map(|range| Jet::constant(range.low));
+                numbers[place] = Jet::variable(value(part));
                 self.in_force(at, numbers)
-            };
-            let [before, after] = [from, to].map(at_end);
+            });
             let slope = before.first().abs() + after.first().abs();
             let rounding = JUMP * (1.0 + before.value.abs());
-            (after.value - before.value).abs() <= 2.0 * slope + rounding
+            let width = value(to) - value(from);
+            (after.value - before.value).abs() <= 2.0 * slope * width + rounding
         };
         // Parts still to be examined, the last one first.
         let mut open = [[0.0, 1.0]; MOST_PARTS];
@@ -330,8 +356,8 @@ impl Constraint for Coupling {
     }
 
     /// Encloses each coordinate over the region with its first two derivatives along v, and f on
-    /// these. At a corner of f, which only a line may pass, 8 times the distance from the chord takes
-    /// the place of the second derivative.
+    /// these. At a corner of f, eight times the distance from the chord takes the place of the second
+    /// derivative.
     fn bend(
         &self,
         at: &Configuration,
@@ -372,10 +398,7 @@ impl Constraint for Coupling {
             row.add_multiple(slope.magnitude(), &changes[k]);
         }
         let along = self.enclosed(at, numbers);
-        let bound = match region.line {
-            Some(_) => bend(&along),
-            None => along.second().magnitude(),
-        };
+        let bound = bend(&along);
         (along.first().is_finite() && bound.is_finite()).then_some(bound)
     }
 

@@ -106,8 +106,9 @@ impl CurvePath {
         }
     }
 
-    fn part_before(&self, s: f64) -> Option<f64> {
-        (!self.is_closed).then_some(s * self.part)
+    /// Returns s at the last end of an open curve.
+    fn last_end(&self) -> Option<f64> {
+        (!self.is_closed).then_some(1.0 / self.part)
     }
 
     /// Returns x and y of the curve without its offset.
@@ -206,10 +207,14 @@ pub struct OnCurve {
 }
 
 impl OnCurve {
-    /// Returns the part of an open curve that is before the point, from 0 to 1 unless the point is
-    /// beyond its ends; `None` for a closed curve, which has none.
-    pub fn part_before(&self, at: &Configuration) -> Option<f64> {
-        self.path.part_before(at.joint_unknown(self.place))
+    /// Returns s at the last end of an open curve, which begins at zero; `None` for a closed curve.
+    pub(in crate::kinematics) fn last_end(&self) -> Option<f64> {
+        self.path.last_end()
+    }
+
+    /// Returns the place on the curve as a relation of its own.
+    pub(in crate::kinematics) fn place(&self) -> PlaceOnCurve {
+        PlaceOnCurve(self.place)
     }
 
     fn component(&self) -> usize {
@@ -217,6 +222,50 @@ impl OnCurve {
             Axis::X => 0,
             Axis::Y => 1,
         }
+    }
+}
+
+/// c = s, the place of a point on a curve.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaceOnCurve(JointUnknownId);
+
+impl Formula for PlaceOnCurve {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
+        at.joint_unknown(self.0)
+    }
+}
+
+impl Constraint for PlaceOnCurve {
+    fn dimension(&self) -> Dimension {
+        Dimension::Angle
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        at.joint_unknown(self.0)
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        row.add_joint_unknown(at.joint_unknown_column(self.0), 1.0);
+    }
+
+    /// Returns zero: the place is an unknown.
+    fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Returns zero: the place is an unknown.
+    fn bend(
+        &self,
+        _at: &Configuration,
+        _region: &Region<'_>,
+        _v: &[f64],
+        _row: &mut Gradient,
+    ) -> Option<f64> {
+        Some(0.0)
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        incidence.joint_unknown(mechanism, self.0);
     }
 }
 

@@ -275,6 +275,7 @@ fn coupling(equation: &CoordinateEquation) -> Coupling {
                 expression: equation.difference.clone(),
                 parameters: Vec::new(),
                 law: equation.law.as_ref().map(|_| LawId(0)),
+                jumps_by: None,
             }),
         },
         dimension: Dimension::Length,

@@ -1,4 +1,4 @@
-//! Stops: the motion ends where a coordinate reaches a limit.
+//! Stops: the motion ends where a coordinate reaches a limit, or a point the end of a curve.
 //!
 //! The gap of a limit is g = c − min or max − c. A sub-step is *clear* of the limit if
 //!
@@ -16,7 +16,7 @@
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::Error;
 use crate::kinematics::plan::Watched;
-use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
+use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, LimitOwner};
 use crate::kinematics::state::State;
 use crate::kinematics::stop_limit::StopLimit;
 
@@ -185,11 +185,10 @@ impl StopWatch {
 
     /// Reads all coordinates and limits at the present places of the bodies.
     fn look(&mut self, compiled: &CompiledMechanism, state: &State, parameters: &[f64]) {
-        let stops = compiled.system.mechanism().stops.iter();
-        let stops = stops.zip(&compiled.stops).enumerate();
-        for (index, (stop, watched)) in stops {
+        let mechanism = compiled.system.mechanism();
+        for (index, watched) in compiled.stops.iter().enumerate() {
             self.ahead[index] = watched.relation.value(&state.at);
-            self.limits_ahead[index] = stop.limits(parameters);
+            self.limits_ahead[index] = watched.limits(mechanism, parameters);
         }
     }
 
@@ -306,8 +305,7 @@ impl StopWatch {
     fn describe(&self, compiled: &CompiledMechanism, limit: Limit) -> Box<StopLimit> {
         let Limit { stop, is_max } = limit;
         let value = self.limits_here[stop][usize::from(is_max)];
-        let stop = &compiled.system.mechanism().stops[stop];
-        Box::new(StopLimit::new(stop, is_max, value))
+        compiled.stops[stop].describe(compiled.system.mechanism(), is_max, value)
     }
 }
 
@@ -331,13 +329,22 @@ fn deviation(
         watched.deviation_while_moving(bounds, 0.0)
     } else {
         let smooth = watched.deviation(bounds);
-        smooth.or_else(|| Some(2.0 * swept(compiled, state, stop, bounds)))
+        smooth.or_else(|| Some(2.0 * swept(compiled, state, relation.owner, bounds)?))
     };
     deviation.filter(|d| !d.is_nan()).unwrap_or(f64::INFINITY)
 }
 
-/// Bounds the change of a distance over the sub-step, also where its points meet: by their ways.
-fn swept(compiled: &CompiledMechanism, state: &State, stop: usize, bounds: &StepBounds) -> f64 {
+/// Bounds the change of a distance over the sub-step, also where its points meet: by their ways. `None`
+/// for a place on a curve.
+fn swept(
+    compiled: &CompiledMechanism,
+    state: &State,
+    owner: LimitOwner,
+    bounds: &StepBounds,
+) -> Option<f64> {
+    let LimitOwner::Stop(stop) = owner else {
+        return None;
+    };
     let coordinate = compiled.system.mechanism().stops[stop].coordinate;
     let way = |column: usize| {
         let chord = state.at.coordinate(column) - state.pose.q[column];
@@ -350,12 +357,15 @@ fn swept(compiled: &CompiledMechanism, state: &State, stop: usize, bounds: &Step
             way(k) + way(k + 1) + marker.arm.norm() * way(k + 2)
         })
     });
-    ways[0] + ways[1]
+    Some(ways[0] + ways[1])
 }
 
 /// Bounds the deviation of a limit from its chord over the sub-step.
 fn limit_deviation(compiled: &CompiledMechanism, limit: Limit, bounds: &StepBounds) -> f64 {
-    let stop = &compiled.system.mechanism().stops[limit.stop];
+    let LimitOwner::Stop(stop) = compiled.stops[limit.stop].owner else {
+        return 0.0;
+    };
+    let stop = &compiled.system.mechanism().stops[stop];
     let expression = if limit.is_max { &stop.max } else { &stop.min };
     match expression {
         Some(expression) if bounds.parameters.moving => {
@@ -374,15 +384,15 @@ pub(in crate::kinematics) fn check_pose(
     compiled: &CompiledMechanism,
     state: &State,
 ) -> Result<(), Error> {
-    let stops = compiled.system.mechanism().stops.iter();
-    for (stop, watched) in stops.zip(&compiled.stops) {
+    let mechanism = compiled.system.mechanism();
+    for watched in &compiled.stops {
         let value = watched.relation.value(&state.at);
-        let [least, most] = stop.limits(&state.pose.parameters);
+        let [least, most] = watched.limits(mechanism, &state.pose.parameters);
         let play = 2.0 * STRAIGHT * watched.scale(state.at.size()).max(value.abs());
         for (is_max, limit, gap) in [(false, least, value - least), (true, most, most - value)] {
             if gap < -play {
                 return Err(Error::BeyondStop {
-                    limit: Box::new(StopLimit::new(stop, is_max, limit)),
+                    limit: watched.describe(mechanism, is_max, limit),
                     value,
                 });
             }

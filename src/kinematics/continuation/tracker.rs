@@ -53,7 +53,7 @@ impl PathTracker {
             bounds: StepBounds::new(system),
             crossed: Vec::new(),
             fruitless: FruitlessSearches::default(),
-            stops: StopWatch::new(system.mechanism().stops.len()),
+            stops: StopWatch::new(system.limited()),
             ignores_stops: false,
         }
     }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::BlockPlan;
 use crate::kinematics::constraint::configuration::Configuration;
-use crate::kinematics::constraint::{Constraint, Incidence, of_coordinate};
+use crate::kinematics::constraint::{Constraint, Incidence, OnCurve, of_coordinate};
+use crate::kinematics::stop_limit::StopLimit;
 use crate::kinematics::system::structure::{Block, Structure};
 use crate::kinematics::system::{System, Target, Targets};
 use crate::mechanism::{DriverId, DriverSource, Mechanism, Stop};
@@ -22,18 +23,28 @@ pub(in crate::kinematics) struct CompiledMechanism {
     pub(in crate::kinematics) named: Vec<Option<Box<dyn Constraint>>>,
 }
 
-/// The coordinate of a stop.
+/// The coordinate of a stop, or the place on an open curve.
 #[derive(Debug)]
 pub(in crate::kinematics) struct StopRelation {
     pub(in crate::kinematics) relation: Box<dyn Constraint>,
     /// The unknowns in it, each once.
     pub(in crate::kinematics) columns: Vec<usize>,
-    /// The part of the mechanism's size that scales it, `None` for an angle.
+    /// The part of the mechanism's size that scales it, `None` for an angle or a place on a curve.
     pub(in crate::kinematics) part: Option<f64>,
+    pub(in crate::kinematics) owner: LimitOwner,
+}
+
+/// The owner of limits.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::kinematics) enum LimitOwner {
+    /// A stop, by its index.
+    Stop(usize),
+    /// A joint with an open curve, by its index, and the place at the curve's last end.
+    Curve(usize, f64),
 }
 
 impl StopRelation {
-    fn new(system: &System, stop: &Stop) -> Self {
+    fn of_stop(system: &System, (index, stop): (usize, &Stop)) -> Self {
         let relation = of_coordinate(&stop.coordinate);
         let mut incidence = Incidence::default();
         relation.incidence(system.mechanism(), &mut incidence);
@@ -48,7 +59,48 @@ impl StopRelation {
             relation,
             part: (!stop.coordinate.kind.is_angle()).then_some(part),
             columns,
+            owner: LimitOwner::Stop(index),
         }
+    }
+
+    fn of_curve(system: &System, (joint, curve): (usize, &OnCurve)) -> Option<Self> {
+        let relation = curve.place();
+        let mut incidence = Incidence::default();
+        relation.incidence(system.mechanism(), &mut incidence);
+        Some(Self {
+            relation: Box::new(relation),
+            columns: incidence.unknowns,
+            part: None,
+            owner: LimitOwner::Curve(joint, curve.last_end()?),
+        })
+    }
+
+    /// Returns least and largest value for these parameters, infinite without a limit. Allocates
+    /// nothing.
+    pub(in crate::kinematics) fn limits(
+        &self,
+        mechanism: &Mechanism,
+        parameters: &[f64],
+    ) -> [f64; 2] {
+        match self.owner {
+            LimitOwner::Stop(stop) => mechanism.stops[stop].limits(parameters),
+            LimitOwner::Curve(_, last) => [0.0, last],
+        }
+    }
+
+    /// Returns one of the limits for messages, with the value that it has.
+    pub(in crate::kinematics) fn describe(
+        &self,
+        mechanism: &Mechanism,
+        is_max: bool,
+        value: f64,
+    ) -> Box<StopLimit> {
+        Box::new(match self.owner {
+            LimitOwner::Stop(stop) => StopLimit::new(&mechanism.stops[stop], is_max, value),
+            LimitOwner::Curve(joint, _) => {
+                StopLimit::of_curve(&mechanism.joints[joint].name, is_max, value)
+            }
+        })
     }
 
     /// Returns the scale factor of the coordinate \[m or rad\], for this size of the mechanism.
@@ -99,8 +151,11 @@ impl CompiledMechanism {
         });
         let named = named.collect();
         let system = System::new(mechanism);
-        let stops = system.mechanism().stops.iter();
-        let stops = stops.map(|stop| StopRelation::new(&system, stop)).collect();
+        let stops = system.mechanism().stops.iter().enumerate();
+        let stops = stops.map(|stop| StopRelation::of_stop(&system, stop));
+        let curves = system.curves();
+        let curves = curves.filter_map(|curve| StopRelation::of_curve(&system, curve));
+        let stops = stops.chain(curves).collect();
         let structure = Structure::new(&system, &[]);
         let pairs_up = structure.is_some();
         let structure = structure.unwrap_or_else(|| Structure::of_nothing(&system));

@@ -350,6 +350,10 @@ fn coupling(
             parameters: (equation.difference.parameters())
                 .map(|id| (id, parts.coefficient(&Expression::parameter(id), what)))
                 .collect(),
+            jumps_by: match equation.difference.jumping_coordinates()[..] {
+                [place] => Some(place),
+                _ => None,
+            },
             law: (equation.law.as_ref()).map(|law| parts.law(law, mechanism, what.to_owned())),
         }),
     };

@@ -108,6 +108,9 @@ impl Expression {
         dimensions: &[Option<Dimension>],
     ) -> Result<Parsed, ExpressionError> {
         let mut parser = Parser::new(text, scope, dimensions)?;
+        if parser.token.kind == TokenKind::End {
+            return Err(ExpressionError::new(0..text.len(), "the equation is empty").help(EQUATION));
+        }
         let mut span = parser.parse_operators(0)?;
         let left = parser.dimensions.result();
         if parser.token.kind != TokenKind::Symbol(b'=') {
@@ -314,6 +317,10 @@ impl<'a> Parser<'a> {
         let open = self.advance()?;
         let start = self.program.len();
         self.parse_operators(0)?;
+        if self.token.kind == TokenKind::Symbol(b',') {
+            let message = format!("`{LAW}` takes 1 argument");
+            return Err(ExpressionError::new(self.token.span(), message));
+        }
         let span = place.start..self.expect_close(&open)?.end;
         match law {
             LawOfCoupling::Table => self.emit(Operation::Law, &span)?,
@@ -491,6 +498,14 @@ impl<'a> Parser<'a> {
     fn unknown_name(&self, name: &str, span: Span, called: bool) -> ExpressionError {
         if called {
             let error = ExpressionError::new(span, format!("no function {}", quoted(name)));
+            if name == LAW
+                && self
+                    .scope
+                    .moving
+                    .is_some_and(|moving| !moving.dimensions.is_empty())
+            {
+                return error.help("give the coupling the function: add `law = …`");
+            }
             return match function_help(name) {
                 Some(help) => error.help(help),
                 None => error,

@@ -5,7 +5,7 @@
 //! switch; whether the pieces join smoothly is not examined here.
 
 use super::function::Binary;
-use super::{Expression, MAX_STACK, Operation, Values};
+use super::{Expression, MAX_STACK, Operation, Values, Variable};
 use crate::mechanism::ParameterId;
 use crate::mechanism::number::{Interval, Jet3, Number, Taylor, Unary};
 
@@ -41,6 +41,32 @@ impl Expression {
         });
         let first = parts.next().flatten();
         parts.fold(first, |hull, part| Some(hull?.hull(part?)))
+    }
+
+    /// Returns the places of the coordinates on which `floor`, `ceil`, `sign` and `mod` depend, which
+    /// jump; ascending.
+    #[must_use]
+    pub fn jumping_coordinates(&self) -> Vec<usize> {
+        let mut stack: Vec<Vec<usize>> = Vec::new();
+        let mut jumping = Vec::new();
+        for operation in &self.program {
+            let operands = stack.split_off(stack.len() - operation.arity());
+            let mut places = operands.concat();
+            if let Operation::Variable(Variable::Coordinate(place)) = operation {
+                places.push(*place);
+            }
+            if matches!(
+                operation,
+                Operation::Unary(Unary::Sign | Unary::Floor | Unary::Ceil)
+                    | Operation::Binary(Binary::Mod)
+            ) {
+                jumping.extend_from_slice(&places);
+            }
+            stack.push(places);
+        }
+        jumping.sort_unstable();
+        jumping.dedup();
+        jumping
     }
 
     /// Encloses the result for these numbers on each piece that may be in force: derivatives are

@@ -49,6 +49,8 @@ pub(super) struct Context<'a> {
     pub(super) body_names: Vec<&'a str>,
     /// Coordinates of drivers and measures.
     pub(super) coordinates: Vec<(&'a str, Coordinate)>,
+    /// Whether coordinates are missing after errors.
+    pub(super) lacks_coordinates: bool,
     /// Names of computed measures.
     pub(super) computed: Vec<&'a str>,
     /// Joints, then constraints, by their places among these.
@@ -82,6 +84,7 @@ impl<'a> Context<'a> {
             bodies: NameTable::new(),
             body_names: Vec::new(),
             coordinates: Vec::new(),
+            lacks_coordinates: false,
             computed: Vec::new(),
             holders: NameTable::new(),
             holder_counts: [0; 2],

@@ -47,6 +47,7 @@ impl<'a> Context<'a> {
         let measures = measures
             .iter()
             .map(|measure| (&measure.name, measure.coordinate));
+        self.lacks_coordinates = self.failed;
         let known: HashMap<&String, Coordinate> = drivers.chain(measures).collect();
         let entries = sections.into_iter().flat_map(Field::items);
         for entry in entries {

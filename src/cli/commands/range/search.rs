@@ -94,7 +94,8 @@ fn climb<T: Copy>(
     let [mut a, mut b] = [low, high];
     let mut inner = [b - GOLDEN * width, a + GOLDEN * width];
     let mut found = inner.map(&mut *at);
-    while b - a > LAST_WIDTH * width {
+    // Samples may be a rounding apart.
+    while b - a > LAST_WIDTH * width && a < inner[0] && inner[0] < inner[1] && inner[1] < b {
         if size(found[0]) >= size(found[1]) {
             b = inner[1];
             inner = [b - GOLDEN * (b - a), inner[0]];
@@ -157,6 +158,19 @@ mod tests {
         assert!(is_near(found, 1.5, 17.5), "{found:?}");
         assert!(is_near(over(|x| -x), 20.0, -20.0));
         assert!(is_near(over(|x| x), 20.0, 20.0));
+    }
+
+    #[test]
+    fn samples_may_be_a_rounding_apart() {
+        let places = [
+            250.0,
+            251.0,
+            251.0_f64.next_up(),
+            251.0_f64.next_up().next_up(),
+        ];
+        let samples = places.map(|at| (at, Some((at, ()))));
+        let found = largest(&samples, |at| Some((at, ())));
+        assert_eq!(found, Some(Largest::Value((places[3], ()), places[3])));
     }
 
     #[test]

@@ -98,8 +98,7 @@ impl<'a> Context<'a> {
         let law = keys.law.optional()?;
         let phase = phase(keys.phase)?;
         let value = keys.equation.value?;
-        // After an error elsewhere the coordinates may be incomplete.
-        if self.failed {
+        if self.lacks_coordinates {
             return None;
         }
         let names = self.coordinates.iter().map(|(name, _)| *name);
