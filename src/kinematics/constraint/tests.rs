@@ -43,7 +43,7 @@ y = "0.2*s - 0.3*sin(s)"
 line = { type = "coupling", equation = "2*turn - far = 0.5*near + 1" }
 angles = { type = "coupling", equation = "2*turn = 3*lean" }
 curve = { type = "coupling", equation = "lean = atan2(near*sin(turn), 9 + far) + near^2*far" }
-law = { type = "coupling", equation = "far = law(turn)*near", law = { table = [[-8, 0.2], [-3, 0.5], [2, -0.4], [9, 0.3]] } }
+law = { type = "coupling", equation = "far = law(turn)*near", law = { table = [[-20, 0.2], [20, 1.4]], law = "polynomial_4567" } }
 [measures]
 turn = { coordinate = "angle", markers = ["a.A", "b.B"] }
 lean = { coordinate = "angle", markers = ["ground.G", "c.C"] }
