@@ -140,7 +140,7 @@ impl Gap {
             // Short enough to tell whether the motion leads out.
             0.5 * h * (straight / deviation).sqrt()
         } else {
-            // So much shorter that rounding shows.
+            // Rounding shows only if the sub-step gets much shorter.
             reach(before, slope, deviation / (h * h)).min(0.7 * h)
         };
         Verdict::Shorter(part.max(SHORTEST))
