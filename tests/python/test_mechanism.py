@@ -102,8 +102,8 @@ def test_a_range_ends_at_stops(mechanism):
     assert found.lower.kind == found.upper.kind == "stop"
     assert_allclose([found.lower.value, found.upper.value], [np.radians(-40), np.arcsin(2 / 3)])
     assert "stop `strike` reached: throw = 0.020000000 m" in found.upper.text
-    with pytest.raises(biela.Error, match="stop `strike` reached"):
-        latch.run({"handle_angle": "t"}, stop=1)
+    with pytest.raises(biela.StoppedError, match="stop `strike` reached"):
+        latch.run(t=np.linspace(0, 1, 11), drive={"handle_angle": "t"})
 
 
 def test_a_range_has_the_extremes_of_measures(four_bar):

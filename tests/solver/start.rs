@@ -166,9 +166,12 @@ fn compare_turns(mechanism: &Arc<Mechanism>, drivers: &[usize], part: f64) -> bo
         solver.restore(&home);
         let started = start(&mut solver, &goal, &[]);
         let Some(turning) = turning else {
-            // Within the swing of a crank the mechanism closes, beyond it may not.
+            // Within the swing of a crank the mechanism closes, beyond it or a stop it may not.
             let error = started.expect_err(&what);
-            let refused = matches!(error, Error::NoWay { .. } | Error::NotAssembled { .. });
+            let refused = matches!(
+                error,
+                Error::NoWay { .. } | Error::NotAssembled { .. } | Error::BeyondStop { .. }
+            );
             assert!(refused, "{what}: {error}");
             continue;
         };
