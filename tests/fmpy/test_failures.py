@@ -225,6 +225,31 @@ def test_a_dead_point_within_a_step(slave):
     assert side == pytest.approx(0.25 * np.cos(arm), rel=1e-9)
 
 
+def test_a_stop_within_a_step(slave):
+    """The bolt of the latch is 0.03 m times the sine of the handle's angle; it ends at 0.02 m."""
+    instance = slave("latch").start({"handle_angle.position": 0.7})
+    instance.set_derivatives("handle_angle.position", 0.5)
+    with pytest.raises(FMICallException) as failed:
+        instance.step(0.1)
+    assert failed.value.status == DISCARD
+    reached = instance.fmi.getRealStatus(fmi2LastSuccessfulTime)
+    assert reached == pytest.approx((np.arcsin(2 / 3) - 0.7) / 0.5, abs=1e-12)
+    throw, angle = instance.get("throw.position", "handle.phi")
+    assert throw == pytest.approx(0.02, abs=1e-15)
+    assert angle == pytest.approx(np.arcsin(2 / 3), abs=1e-12)
+    (warning,) = instance.messages.texts(WARNING)
+    assert warning.startswith("stop `strike` reached: throw = 0.020000000 m"), warning
+
+
+def test_a_start_beyond_a_stop(slave):
+    instance = slave("latch")
+    with pytest.raises(FMICallException) as failed:
+        instance.start({"handle_angle.position": 0.8})
+    assert failed.value.status == ERROR
+    errors = instance.messages.texts(ERROR)
+    assert any("the start pose is beyond stop `strike`" in text for text in errors), errors
+
+
 def test_terminate_after_a_discarded_step(slave):
     instance = slave("tlv").start()
     instance.set({"side_length.position": 0.7})

@@ -223,3 +223,22 @@ def test_a_dead_point_ends_the_run_early_in_fmpy(fmu3):
     )
     # The arm is stretched at 0.65 m, at 1.5 s; held inputs lag by a step.
     assert 1.5 <= result["time"][-1] <= 1.55
+
+
+def test_a_stop_ends_the_run_early_in_fmpy(fmu3):
+    """The handle turns by 0.5 rad/s; the bolt meets its strike plate at asin(2/3)."""
+    fmu = fmu3("latch")
+    signal = np.zeros(2, dtype=[("time", float), ("handle_angle.position", float)])
+    signal["time"], signal["handle_angle.position"] = [0.0, 2.0], [0.0, 1.0]
+    result = fmpy.simulate_fmu(
+        str(fmu.folder),
+        stop_time=2.0,
+        output_interval=0.05,
+        input=signal,
+        early_return_allowed=True,
+        output=["throw.position"],
+    )
+    # Held inputs lag by a step.
+    met = np.arcsin(2 / 3) / 0.5
+    assert met <= result["time"][-1] <= met + 0.1
+    assert 0.019 < result["throw.position"].max() <= 0.02
