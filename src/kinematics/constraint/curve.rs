@@ -171,6 +171,29 @@ impl CurvePath {
         [beside(point, slope, offset), slope]
     }
 
+    /// Returns a component of the curve with its offset at a place, with two derivatives.
+    fn component<S: Base>(
+        &self,
+        coefficient: impl Fn(CoefficientId) -> f64,
+        s: S,
+        component: usize,
+    ) -> Taylor<S, 2> {
+        match &self.shape {
+            _ if self.offset.is_some() => self.place(coefficient, s).point[component],
+            Shape::Points(_) => {
+                let c = self.jets(coefficient, s)[component];
+                Taylor::new(c.value, [c.first(), c.second()])
+            }
+            Shape::Formula(formula) => {
+                let [first, last] = formula.ends.map(&coefficient);
+                let way = S::constant((last - first) * self.part);
+                let variable = Taylor::linear(S::constant(first) + way * s, way);
+                let parameter = |p| Taylor::constant(coefficient(formula.coefficient(p)));
+                formula.components[component].evaluate(&parameter, variable)
+            }
+        }
+    }
+
     /// Returns the curve with its offset at a place, with two derivatives.
     fn point(&self, at: &Configuration, s: f64) -> [Jet; 2] {
         self.place(|id| at.coefficient(id), s).point
@@ -215,6 +238,12 @@ impl OnCurve {
     /// Returns the place on the curve as a relation of its own.
     pub(in crate::kinematics) fn place(&self) -> PlaceOnCurve {
         PlaceOnCurve(self.place)
+    }
+
+    /// Returns the component of the curve at its place.
+    fn on_curve(&self, at: &Configuration) -> Jet {
+        let s = at.joint_unknown(self.place);
+        (self.path).component(|id| at.coefficient(id), s, self.component())
     }
 
     fn component(&self) -> usize {
@@ -282,19 +311,18 @@ impl Constraint for OnCurve {
     }
 
     fn value(&self, at: &Configuration) -> f64 {
-        let point = self.path.point(at, at.joint_unknown(self.place));
-        self.coordinate.value(at) - point[self.component()].value
+        self.coordinate.value(at) - self.on_curve(at).value
     }
 
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
-        let point = self.path.point(at, at.joint_unknown(self.place))[self.component()];
+        let point = self.on_curve(at);
         row.add_joint_unknown(at.joint_unknown_column(self.place), -point.first());
         self.coordinate.value_and_gradient(at, row) - point.value
     }
 
     /// Returns that of the coordinate − C″ · e ṡ².
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let point = self.path.point(at, at.joint_unknown(self.place))[self.component()];
+        let point = self.on_curve(at);
         let rate = q_dot[at.joint_unknown_column(self.place)];
         self.coordinate.quadratic(at, q_dot) - point.second() * rate * rate
     }
@@ -310,8 +338,9 @@ impl Constraint for OnCurve {
         let column = at.joint_unknown_column(self.place);
         let slide = region.radius(column);
         let range = around(at.joint_unknown(self.place), slide);
-        let place = self.path.place(|id| at.coefficient(id), range);
-        let second = place.point[self.component()].second();
+        let path = &self.path;
+        let point = path.component(|id| at.coefficient(id), range, self.component());
+        let second = point.second();
         if !second.is_finite() {
             return None;
         }

@@ -125,7 +125,7 @@ fn joints_on_lines() -> Vec<(String, Vec<String>)> {
             .map(|(key, _)| key.trim().to_owned())
             .collect();
         // A mechanism with a table in a file beside it is read from its place only.
-        if !names.is_empty() && !text.contains("file = ") {
+        if !names.is_empty() && !text.contains(".csv\"") {
             found.push((name, names));
         }
     }
