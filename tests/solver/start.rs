@@ -195,7 +195,7 @@ const TURNING: &str = "andrews.beta andrews_free.beta bonnet_hinge.opening cam_f
     five_bar_free.left_angle five_bar_free.right_angle five_bar_robot.left_angle \
     five_bar_robot.right_angle four_bar.crank_angle four_bar_chain.post_angle \
     four_bar_free.crank_angle \
-    geared_five_bar.crank_angle hatch.opening jansen_leg.crank_angle parallelogram.crank_angle \
+    geared_five_bar.crank_angle groove_cam.cam_angle hatch.opening jansen_leg.crank_angle parallelogram.crank_angle \
     pendulum.swing_angle pendulum_free.swing planetary_gear.sun_angle rack_drive.crank_angle \
     rolling_wheel.turn scotch_yoke.crank_angle sewing_machine.shaft_angle \
     slider_crank.crank_angle slider_crank_motor.crank_angle slotted_lever.crank_angle \
