@@ -10,7 +10,7 @@ from .taylor import Taylor
 
 LENGTH, PARTS = 4.00, 2
 LEFT, RIGHT = -0.30 + 0j, 0.50 + 0.10j
-WAY, ALONG = 0.62 + 0.05j, np.exp(-1j * np.pi / 3)
+WAY, ALONG = 0.62 + 0.05j, np.exp(-1j * np.radians(75))
 LOAD, HAND, G = 80.0, 1.5, 9.81
 
 
