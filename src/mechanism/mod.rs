@@ -13,7 +13,7 @@
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
 //! | `coupling` | [`CoordinateEquation`]: an equation between coordinates |
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
-//! | `reaction` | [`ForceQuantity`]: forces, energies and inertias by name |
+//! | `force_quantity`, `reaction` | [`ForceQuantity`]: forces, energies and inertias, and their names |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `stop` | [`Stop`]: limits of a coordinate |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
@@ -31,6 +31,7 @@ mod diagnostic;
 mod encoding;
 mod expression;
 mod force;
+mod force_quantity;
 mod id;
 mod lookup;
 mod motion;
@@ -62,6 +63,7 @@ pub(crate) use expression::Values;
 pub(crate) use expression::constant;
 pub use expression::{Expression, ExpressionError, LinearForm, Variable};
 pub use force::{Force, ForceComponent, ForceLaw, Load, Spring};
+pub use force_quantity::ForceQuantity;
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
@@ -74,7 +76,7 @@ pub use parameter::{DerivedParameter, Parameter};
 pub use profile::{
     ContourPoint, MovingProfile, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
 };
-pub use reaction::{ForceQuantity, NamedForce, Reported};
+pub use reaction::{NamedForce, Reported};
 pub(crate) use rope::MOST_BODIES;
 pub use rope::{Pulley, PulleySide, Rope, RopePoint};
 pub use setting::{Extrapolation, RateSource};

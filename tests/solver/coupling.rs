@@ -178,10 +178,10 @@ fn jumps_of_two_coordinates_do_not_cancel() {
     let (mut solver, mut path) = assembled(&parse(text));
     for (curve, [from, to]) in path.curves.iter_mut().zip([[0.9, 1.1], [1.1, 0.9]]) {
         *curve = Curve::Input {
-            position: from,
+            position: to,
             velocity: 0.0,
             acceleration: 0.0,
-            jump: to - from,
+            jump: from - to,
         };
     }
     solver.track(&path).expect_err("both jump half-way");
@@ -276,7 +276,7 @@ fn arms_text_with_estimate(joint: &str) -> String {
     )
 }
 
-/// Where wheels as drawn would let all else close, the error says so.
+/// The error says so where wheels as drawn would let all else close.
 #[test]
 fn a_phase_that_contradicts_is_told_with_its_remedy() {
     let text = arms_text_with_estimate(

@@ -189,15 +189,16 @@ fn compare_turns(mechanism: &Arc<Mechanism>, drivers: &[usize], part: f64) -> bo
 /// Drivers of the shipped mechanisms that are angles and turn fully.
 const TURNING: &str = "andrews.beta andrews_free.beta bonnet_hinge.opening cam_flat.cam_angle \
     cam_flat_arm.cam_angle cam_knife.cam_angle cam_knife_arm.cam_angle cam_points.cam_angle \
-    cam_roller.cam_angle cam_roller_arm.cam_angle cart_pole.lean chebyshev.coupler_angle \
+    cam_roller.cam_angle cam_roller_arm.cam_angle cart_pole.lean chebyshev.coupler_angle corexy.motor_a corexy.motor_b \
     double_pendulum.shoulder double_pendulum.elbow double_rocker.worm_angle drag_link.crank_angle \
     elliptic_trammel.bar_angle engine.crank_angle engine_free.crank_angle \
     five_bar_free.left_angle five_bar_free.right_angle five_bar_robot.left_angle \
     five_bar_robot.right_angle four_bar.crank_angle four_bar_chain.post_angle \
     four_bar_free.crank_angle \
-    geared_five_bar.crank_angle groove_cam.cam_angle hatch.opening jansen_leg.crank_angle parallelogram.crank_angle \
+    geared_five_bar.crank_angle geneva_drive.crank_angle groove_cam.cam_angle hatch.opening \
+    jansen_leg.crank_angle parallelogram.crank_angle \
     pendulum.swing_angle pendulum_free.swing planetary_gear.sun_angle rack_drive.crank_angle \
-    rolling_wheel.turn scotch_yoke.crank_angle sewing_machine.shaft_angle \
+    rolling_wheel.turn scotch_yoke.crank_angle screw_jack.turn sewing_machine.shaft_angle \
     slider_crank.crank_angle slider_crank_motor.crank_angle slotted_lever.crank_angle \
     stephenson_six_bar.crank_angle swinging_tip.swing tlv_crank.arm_angle \
     toggle_press.crank_angle v_twin.crank_angle valve_train.cam_angle watt_six_bar.crank_angle \
@@ -206,7 +207,9 @@ const TURNING: &str = "andrews.beta andrews_free.beta bonnet_hinge.opening cam_f
 #[test]
 fn shipped_mechanisms_start_many_turns_away() {
     let mut turning = Vec::new();
-    for name in stems("mechanisms", "toml") {
+    // A lift does not come back after turns of its screw.
+    let names = stems("mechanisms", "toml").into_iter();
+    for name in names.filter(|name| name != "scissor_lift_screw") {
         let mechanism = shipped(&name);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
             let is_input = driver.motion().is_none();

@@ -7,10 +7,9 @@ use nalgebra::Vector2;
 use crate::kinematics::Error;
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{
-    BodyId, Expression, Jet, MarkerId, Mechanism, Motion, MotionInForce, Number, ProfileInForce,
+    BodyId, Expression, Interval, Jet, Jet3, MarkerId, Mechanism, Motion, MotionInForce, Number,
+    ProfileInForce,
 };
-
-use super::moving_configuration::Enclosed;
 
 /// Returns a vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
 #[must_use]
@@ -134,7 +133,7 @@ pub struct CouplingLaw {
     /// On numbers with derivatives.
     pub in_force: MotionInForce,
     /// On ranges of the argument.
-    pub enclosed: MotionInForce<Enclosed>,
+    pub enclosed: MotionInForce<Jet3<Interval>>,
     /// Kind and name of the joint.
     pub what: String,
 }
@@ -248,8 +247,7 @@ impl Configuration {
         }
         for law in &mut self.laws {
             law.in_force.set_parameters(|p| Jet::constant(value(p)));
-            law.enclosed
-                .set_parameters(|p| Enclosed::constant(value(p)));
+            law.enclosed.set_parameters(|p| Jet3::constant(value(p)));
             if !law.in_force.evaluate(Jet::constant(0.0)).is_finite() {
                 return Err(Error::NotFinite {
                     what: law.what.clone(),

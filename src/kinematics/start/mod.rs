@@ -194,17 +194,20 @@ impl Journey<'_> {
         let most = most_substeps(self.compiled.plan.work(), None);
         let (mut before, mut begun) = (self.state.pose.clone(), 0);
         let (mut done, mut left, mut stride) = (0, turns.abs(), 1_i64);
-        let mut repeated = None;
+        let (mut repeated, mut is_linear) = (None, true);
         while left > 0 {
             // After many sub-steps the tracker judges the whole rest of the way.
             let few = f64::from(self.progress.substeps) < most;
             let next = if few { stride.min(left) } else { left };
             (done, left) = (done + next, left - next);
             let progress = self.move_to(&after(done))?;
-            if progress.substeps == 1 {
-                // Linear relations take one sub-step, however long it is.
-                stride = stride.saturating_mul(2);
-            }
+            // Linear relations take one sub-step, however long it is.
+            is_linear &= progress.substeps == 1;
+            stride = if is_linear {
+                stride.saturating_mul(2)
+            } else {
+                1
+            };
             if self.state.pose.crossings.len() != before.crossings.len() {
                 // A change point counts once it is approached on the turn.
                 (before, begun) = (self.state.pose.clone(), done);

@@ -35,8 +35,9 @@ pub(super) use reserved::is_taken;
 #[cfg(feature = "cli")]
 pub(super) use reserved::taken;
 
+use super::force_quantity::ForceQuantity;
 use super::number::{self, Interval, Jet3, Number, Unary};
-use super::{ForceQuantity, Order, ParameterId, Signal};
+use super::{Order, ParameterId, Signal};
 
 /// Variable of an expression, besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +80,7 @@ impl Variable {
     }
 }
 
-/// What an expression takes from outside, on numbers of type N.
+/// The numbers of type N that an expression takes from outside.
 pub(crate) trait Values<N> {
     /// Returns the value of a parameter.
     fn parameter(&self, id: ParameterId) -> N;

@@ -580,7 +580,11 @@ impl<'a> Parser<'a> {
             near.or_else(|| coordinates?.known.near(name, &[]))
         };
         let help = self.unit_help(name).or_else(moving).or_else(taken);
-        let help = help.or_else(near);
+        let own = || match self.scope.variables {
+            [Variable::Argument] => Some("a law is a function of `x`".to_owned()),
+            _ => None,
+        };
+        let help = help.or_else(near).or_else(own);
         error.help(help.unwrap_or_else(|| "give it a value in `[parameters]`".to_owned()))
     }
 

@@ -107,6 +107,13 @@ impl Balance<'_> {
         if let JointKind::Rope(rope) = &joint.kind {
             return self.add_rope(rope, force.x);
         }
+        if let JointKind::Coupling(equation) = &joint.kind {
+            for (place, (_, coordinate)) in equation.coordinates.iter().enumerate() {
+                let effort = self.value(ForceQuantity::Share(index, place));
+                self.add_effort(coordinate, effort);
+            }
+            return;
+        }
         let (JointKind::Gear { sizes, carrier, .. } | JointKind::Belt { sizes, carrier, .. }) =
             &joint.kind
         else {

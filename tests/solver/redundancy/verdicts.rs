@@ -252,7 +252,8 @@ fn contradictions_are_named_with_their_gaps() {
             ),
             Says(
                 "joint `k` contradicts all others: with these closed, it stays open by 30.00 deg; \
-                 move one of its markers by as much, or remove it",
+                 move one of its markers by as much, or remove it: joint `k` would close with \
+                 `phase = \"drawn\"`",
             ),
         ),
         (
