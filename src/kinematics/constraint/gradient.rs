@@ -8,7 +8,7 @@ use crate::mechanism::{BodyId, MOST_BODIES};
 /// A row of the Jacobian: its entries for some bodies and one joint unknown.
 ///
 /// It does not allocate. Most relations have at most three markers, hence three bodies; a rope or a
-/// coupling may have [eight](MOST_BODIES).
+/// coupling may have eight.
 #[derive(Clone, Debug, Default)]
 pub struct Gradient {
     len: usize,

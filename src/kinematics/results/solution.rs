@@ -167,7 +167,7 @@ impl Solution {
     ///
     /// # Errors
     ///
-    /// Those of [`Solver::sensitivity`], [`Solver::force_sensitivity`] and [`OutputSource::change`].
+    /// Those of [`Solver::sensitivity`], [`Solver::force_sensitivity`] and [`OutputSource::change`](super::OutputSource::change).
     pub fn changes(
         &mut self,
         solver: &mut Solver,

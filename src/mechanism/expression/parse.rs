@@ -1,12 +1,13 @@
 //! Parser of expressions (Pratt), which gives the place of an error.
 
+mod fault;
+
 use super::dimension::{Clash, Dimensions};
 use super::error::ExpressionError;
-use super::function::{Binary, CONSTANTS, FUNCTIONS, constant, function};
-use super::reserved::is_taken;
+use super::function::{Binary, constant, function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
-use crate::mechanism::names::{self, NameTable};
+use crate::mechanism::names::NameTable;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Dimension, ParameterId, Span};
 
@@ -318,7 +319,7 @@ impl<'a> Parser<'a> {
         let start = self.program.len();
         self.parse_operators(0)?;
         if self.token.kind == TokenKind::Symbol(b',') {
-            let message = format!("`{LAW}` takes 1 argument");
+            let message = format!("`{LAW}` takes 1 argument, found more");
             return Err(ExpressionError::new(self.token.span(), message));
         }
         let span = place.start..self.expect_close(&open)?.end;
@@ -440,199 +441,4 @@ impl<'a> Parser<'a> {
             _ => Err(self.missing_operator()),
         }
     }
-
-    /// Returns the error for a token that cannot follow a complete operand.
-    fn missing_operator(&self) -> ExpressionError {
-        let found = &self.text[self.token.span()];
-        let error = ExpressionError::new(
-            self.token.span(),
-            format!("expected an operator, found {}", quoted(found)),
-        );
-        if found == "=" {
-            return error.help("only the `equation` of a coupling has a `=`");
-        }
-        if !self.token.starts_operand() {
-            return error.help("the decimal mark is a point");
-        }
-        let left = match self.previous {
-            Some(token) if token.kind != TokenKind::Symbol(b')') => &self.text[token.span()],
-            _ => "(…)",
-        };
-        let right = if found == "(" { "(…)" } else { found };
-        if left.len() + right.len() > 40 {
-            return error.help("multiplication is written out");
-        }
-        if let Some(help) = self.unit_help(right) {
-            return error.help(help);
-        }
-        error.help(format!("multiplication is written out: `{left}*{right}`"))
-    }
-
-    /// Returns the error for a token where an operand is expected.
-    fn missing_operand(&self) -> ExpressionError {
-        let error = match (self.token.kind, self.previous) {
-            (TokenKind::End, Some(previous)) => {
-                let text = &self.text[previous.span()];
-                ExpressionError::new(
-                    previous.span(),
-                    format!("expected an operand after `{text}`"),
-                )
-            }
-            _ => {
-                let text = &self.text[self.token.span()];
-                ExpressionError::new(
-                    self.token.span(),
-                    format!("expected an operand, found {}", quoted(text)),
-                )
-            }
-        };
-        let twice = |previous: Token<'_>| {
-            previous.kind == TokenKind::Symbol(b'*') && previous.end == self.token.start
-        };
-        if self.token.kind == TokenKind::Symbol(b'*') && self.previous.is_some_and(twice) {
-            return error.help("a power is written `x^2`");
-        }
-        error
-    }
-
-    fn unknown_name(&self, name: &str, span: Span, called: bool) -> ExpressionError {
-        if called {
-            let error = ExpressionError::new(span, format!("no function {}", quoted(name)));
-            if name == LAW
-                && self
-                    .scope
-                    .moving
-                    .is_some_and(|moving| !moving.dimensions.is_empty())
-            {
-                return error.help("give the coupling the function: add `law = …`");
-            }
-            return match function_help(name) {
-                Some(help) => error.help(help),
-                None => error,
-            };
-        }
-        if name == Variable::Time.name() {
-            let error = ExpressionError::new(
-                span,
-                "only a `motion` or the `value` of a force may use time `t`",
-            );
-            return match self.scope.variables {
-                [own, ..] => error.help(format!("here the variable is `{}`", own.name())),
-                [] => error,
-            };
-        }
-        let is_computed = |name| {
-            let moving = self.scope.moving;
-            moving.is_some_and(|moving| moving.computed.contains(&name))
-        };
-        let owner = name.split_once('.').map_or(name, |(owner, _)| owner);
-        let usable = self.scope.moving.map_or("", |moving| moving.usable);
-        if is_computed(owner) {
-            let message = format!("{} is a computed measure", quoted(owner));
-            let help = format!("write its formula here; {usable}");
-            return ExpressionError::new(span, message).help(help);
-        }
-        if name.contains('.') {
-            let error = ExpressionError::new(span, format!("no variable {}", quoted(name)));
-            let Some(moving) = self.scope.moving else {
-                return error.help("only the `value` of a measure may use variables that move");
-            };
-            let is_coordinate = moving.known.get(owner).is_some();
-            let own = is_coordinate.then(|| format!("did you mean `{owner}`?"));
-            let near = || moving.known.near(name, &[]);
-            let help = own.or_else(near);
-            let help = help.or_else(|| moving.known.of_same_owner(name));
-            return error.help(help.unwrap_or_else(|| usable.to_owned()));
-        }
-        let nouns = match self.scope.moving {
-            Some(moving) if !moving.dimensions.is_empty() => "parameter, driver or measure",
-            _ => "parameter",
-        };
-        let error = ExpressionError::new(span, format!("no {nouns} {}", quoted(name)));
-        if name == Variable::PolarAngle.name() {
-            return error.help("only a cam's `profile` may use `theta`, its polar angle");
-        }
-        if [Variable::Position, Variable::Velocity]
-            .map(Variable::name)
-            .contains(&name)
-        {
-            return error.help(format!(
-                "only the `value` of a force along a coordinate may use the coordinate's `{name}`"
-            ));
-        }
-        let constants = CONSTANTS.map(|(constant, _)| constant);
-        // A measure, a driver or a body without its quantity.
-        let moving = || {
-            let moving = self.scope.moving?;
-            let mut full = ["position", "phi"]
-                .map(|part| format!("{name}.{part}"))
-                .into_iter();
-            let full = full.find(|full| moving.known.get(full).is_some())?;
-            Some(format!("did you mean `{full}`?"))
-        };
-        let taken = || self.taken_help(name);
-        let near = || {
-            let near = self.scope.parameters.near(name, &constants);
-            let coordinates = self
-                .scope
-                .moving
-                .filter(|moving| !moving.dimensions.is_empty());
-            near.or_else(|| coordinates?.known.near(name, &[]))
-        };
-        let help = self.unit_help(name).or_else(moving).or_else(taken);
-        let own = || match self.scope.variables {
-            [Variable::Argument] => Some("a law is a function of `x`".to_owned()),
-            _ => None,
-        };
-        let help = help.or_else(near).or_else(own);
-        error.help(help.unwrap_or_else(|| "give it a value in `[parameters]`".to_owned()))
-    }
-
-    /// Returns help for a unit's symbol after a number.
-    fn unit_help(&self, name: &str) -> Option<String> {
-        let is_unit = ["m", "rad", "s", "kg", "N"].contains(&name);
-        (is_unit && self.scope.parameters.get(name).is_none())
-            .then(|| format!("numbers are in SI units: leave out `{name}`"))
-    }
-
-    /// Returns help for a name that no parameter can have.
-    fn taken_help(&self, name: &str) -> Option<String> {
-        let has_time = self.scope.variables.contains(&Variable::Time);
-        match name {
-            "time" if has_time => Some("did you mean `t`?".to_owned()),
-            "time" => {
-                Some("only a `motion` or the `value` of a force may use time, `t`".to_owned())
-            }
-            _ if is_taken(name) => Some(format!(
-                "`{name}` is taken by the language; choose another name"
-            )),
-            _ => None,
-        }
-    }
-
-    fn nested_too_deeply(&self) -> ExpressionError {
-        ExpressionError::new(
-            self.token.span(),
-            "the expression is nested too deeply here",
-        )
-        .help("give a part of it a name: a parameter of its own")
-    }
-}
-
-/// Returns help for an unknown function: the name of the one that other programs call so, or the
-/// nearest name.
-fn function_help(name: &str) -> Option<String> {
-    let ours = match name {
-        "log" => return Some("`ln` is the natural logarithm, `log10` the decimal one".to_owned()),
-        "pow" => return Some("a power is written `x^y`".to_owned()),
-        "arcsin" => "asin",
-        "arccos" => "acos",
-        "arctan" => "atan",
-        "arctan2" => "atan2",
-        "sgn" | "signum" => "sign",
-        "fabs" => "abs",
-        "fmod" | "rem" => "mod",
-        _ => return names::help(name, &FUNCTIONS.map(|(known, _)| known), &[]),
-    };
-    Some(format!("did you mean `{ours}`?"))
 }

@@ -32,7 +32,8 @@ def draw(name: str) -> None:
     """Draws the picture of a mechanism."""
     picture = FOLDER / "pictures" / f"{name}.svg"
     picture.parent.mkdir(exist_ok=True)
-    done = run_biela("draw", mechanism_file(name), "-o", picture)
+    # All have the width that the tests draw.
+    done = run_biela("draw", mechanism_file(name), "-o", picture, "--width", "640")
     assert done.returncode == 0, done.stderr
 
 
