@@ -11,7 +11,7 @@ use fuzz::mutation::{Chance, mutate};
 const TIME: Duration = Duration::from_secs(5);
 
 /// Generated mechanisms of each kind.
-const CASES: u64 = 5;
+const CASES: u64 = 3;
 
 /// All files of a folder, in order.
 fn files(folder: &str) -> Vec<Vec<u8>> {
@@ -81,7 +81,7 @@ fn generated_mechanisms_move_alike_in_any_steps_and_however_they_are_written() {
         for (variant, cases) in [
             (Variant::Fixed, CASES),
             (Variant::Moving, 1),
-            (Variant::Rough, 2),
+            (Variant::Rough, 1),
         ] {
             let counts = fuzz::attack::run((kind, variant), 1, cases, |seed, words| {
                 panic!("{name}, {variant:?}, seed {seed}: {words}");
@@ -90,7 +90,7 @@ fn generated_mechanisms_move_alike_in_any_steps_and_however_they_are_written() {
         }
     }
     // Not all of them close.
-    assert!(agree as usize > 4 * fuzz::attack::KINDS.len(), "{agree}");
+    assert!(agree as usize > 2 * fuzz::attack::KINDS.len(), "{agree}");
 }
 
 /// Tries one case of a kind by the law of `make attack`.

@@ -48,17 +48,7 @@ fn function(chance: &mut Chance, x: &str, [at, value]: [f64; 2]) -> (String, Str
 /// Two cranks coupled by a function of their angles; the second one moves a rocker by a rod.
 pub fn coupled_cranks(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let angles = [angle(chance), angle(chance)];
-    let centre = somewhere(chance, [0.2, 0.8], [-0.4, 0.4]);
-    let pins = [
-        end(ORIGIN, chance.between(0.1, 0.4), angles[0]),
-        end(centre, chance.between(0.1, 0.4), angles[1]),
-    ];
-    text.ground("O", ORIGIN, 0.0);
-    text.ground("P", centre, 0.0);
-    text.bar_between(chance, "first", ORIGIN, pins[0]);
-    text.bar_between(chance, "second", centre, pins[1]);
-    text.pin("O", ["ground.O", "first.a"]);
-    text.pin("P", ["ground.P", "second.a"]);
+    let pins = add_cranks(chance, &mut text, angles);
     text.measure("w", "angle", ["ground.P", "second.a"]);
     let (own, other) = (text.name("u"), text.name("w"));
     let (function, law) = function(chance, &own, angles);
@@ -73,17 +63,7 @@ pub fn coupled_cranks(chance: &mut Chance, mut text: Text<'_>) -> Case {
 /// coupled to a driven wheel, so that all is one block.
 pub fn differential(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let angles = [angle(chance), angle(chance)];
-    let centre = somewhere(chance, [0.3, 0.9], [-0.4, 0.4]);
-    let pins = [
-        end(ORIGIN, chance.between(0.1, 0.4), angles[0]),
-        end(centre, chance.between(0.1, 0.4), angles[1]),
-    ];
-    text.ground("O", ORIGIN, 0.0);
-    text.ground("P", centre, 0.0);
-    text.bar_between(chance, "first", ORIGIN, pins[0]);
-    text.bar_between(chance, "second", centre, pins[1]);
-    text.pin("O", ["ground.O", "first.a"]);
-    text.pin("P", ["ground.P", "second.a"]);
+    let pins = add_cranks(chance, &mut text, angles);
     // The rod between the cranks' pins leaves one degree of freedom, which the sum drives.
     let rod = distance(pins[0], pins[1]);
     let rod = text.length(chance, rod);
@@ -135,6 +115,23 @@ pub fn screw(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let to = start + chance.between(-6.0, 6.0);
     text.turn("u", ["ground.O", "wheel.a"], start, to);
     text.case()
+}
+
+/// Adds two cranks on ground at these angles. Returns their pins.
+fn add_cranks(chance: &mut Chance, text: &mut Text<'_>, angles: [f64; 2]) -> [Point; 2] {
+    let centres = [ORIGIN, somewhere(chance, [0.2, 0.9], [-0.4, 0.4])];
+    let crank = |(ground, name, centre, angle): (&str, &str, Point, f64)| {
+        let pin = end(centre, chance.between(0.1, 0.4), angle);
+        text.ground(ground, centre, 0.0);
+        text.bar_between(chance, name, centre, pin);
+        text.pin(ground, [&format!("ground.{ground}"), &format!("{name}.a")]);
+        pin
+    };
+    [
+        ("O", "first", centres[0], angles[0]),
+        ("P", "second", centres[1], angles[1]),
+    ]
+    .map(crank)
 }
 
 /// Adds a rod from a marker at `pin` to a rocker on ground.
