@@ -40,7 +40,7 @@ NEXT_TO_CHANGE_POINTS = {"four_bar_chain": 4}
 """Factors on the bounds of motions for mechanisms of which a pose is next to a change point, where
 polynomials give the outputs."""
 
-COMPUTED = {"toggle_press": {"advantage"}}
+COMPUTED = {"toggle_press": {"advantage", "pin_force"}}
 """Measures that the files compute from other variables, which are compared."""
 
 OTHER_JOINTS = """

@@ -6,7 +6,7 @@ from . import Case, one_turn
 from .plane import body, point
 
 WIDTH, LENGTH, RADIUS = 0.220, 0.130, 0.020
-CARRIAGE, GANTRY, ROTOR = 0.450, 0.900, 2e-5
+CARRIAGE, GANTRY, ROTOR = 0.450, 0.900, 5e-5
 
 
 def truth(_time, drivers):
