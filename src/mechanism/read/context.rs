@@ -47,10 +47,8 @@ pub(super) struct Context<'a> {
     /// Moving bodies.
     pub(super) bodies: NameTable<'a, BodyId>,
     pub(super) body_names: Vec<&'a str>,
-    /// Coordinates of drivers and measures.
-    pub(super) coordinates: Vec<(&'a str, Coordinate)>,
-    /// Whether coordinates are missing after errors.
-    pub(super) lacks_coordinates: bool,
+    /// Coordinates of drivers and measures, `None` after an error.
+    pub(super) coordinates: Vec<(&'a str, Option<Coordinate>)>,
     /// Names of computed measures.
     pub(super) computed: Vec<&'a str>,
     /// Joints, then constraints, by their places among these.
@@ -84,7 +82,6 @@ impl<'a> Context<'a> {
             bodies: NameTable::new(),
             body_names: Vec::new(),
             coordinates: Vec::new(),
-            lacks_coordinates: false,
             computed: Vec::new(),
             holders: NameTable::new(),
             holder_counts: [0; 2],

@@ -147,7 +147,7 @@ impl<'a> Context<'a> {
             measures,
             derived: Vec::new(),
             forces: self.each(&root.forces, force),
-            stops: Vec::new(),
+            stops: self.each(&root.stops, Self::stop),
             outputs: self.outputs(&root.outputs.or_empty()),
             simulation,
             canonical: syntax::canonical(document) + &self.file_tables,
@@ -157,15 +157,6 @@ impl<'a> Context<'a> {
             mechanism.start_at_estimates();
         }
         mechanism.derived = self.derived(root.measures.items(), &mechanism);
-        let coordinates = root.measures.items().iter().filter(|m| !is_derived(m));
-        let coordinates = coordinates.chain(root.drivers.items());
-        let coordinates: Vec<&str> = coordinates
-            .chain(root.freedoms.items())
-            .map(Entry::name)
-            .collect();
-        mechanism.stops = self.each(&root.stops, |context, entry| {
-            context.stop(entry, &mechanism, |name| coordinates.contains(&name))
-        });
         if !self.failed {
             self.warn_of_large_lengths();
             self.check_freedoms(&mechanism, root.freedoms.items());

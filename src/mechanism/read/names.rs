@@ -11,6 +11,7 @@ use crate::mechanism::{
 };
 
 use super::context::Context;
+use super::derived::is_derived;
 use super::kind::Entry;
 use super::root::Root;
 use super::table::Field;
@@ -33,8 +34,8 @@ impl<'a> Context<'a> {
         self.holders = joints.chain(constraints).zip(0..).collect();
     }
 
-    /// Declares the coordinates that equations may name: those in the sections of drivers,
-    /// freedoms and measures.
+    /// Declares the coordinates that equations and stops may name: those in the sections of
+    /// drivers, freedoms and measures.
     pub(super) fn declare_coordinates(
         &mut self,
         sections: [&Field<Vec<Entry<'a>>>; 3],
@@ -43,17 +44,17 @@ impl<'a> Context<'a> {
     ) {
         let drivers = drivers
             .iter()
-            .map(|driver| (&driver.name, driver.coordinate));
+            .map(|driver| (&*driver.name, driver.coordinate));
         let measures = measures
             .iter()
-            .map(|measure| (&measure.name, measure.coordinate));
-        self.lacks_coordinates = self.failed;
-        let known: HashMap<&String, Coordinate> = drivers.chain(measures).collect();
+            .map(|measure| (&*measure.name, measure.coordinate));
+        let known: HashMap<&str, Coordinate> = drivers.chain(measures).collect();
         let entries = sections.into_iter().flat_map(Field::items);
         for entry in entries {
-            match known.get(&entry.name().to_owned()) {
-                Some(coordinate) => self.coordinates.push((entry.name(), *coordinate)),
-                None => self.computed.push(entry.name()),
+            let name = entry.name();
+            match is_derived(entry) {
+                true => self.computed.push(name),
+                false => self.coordinates.push((name, known.get(name).copied())),
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names;
 use crate::mechanism::wording::{quoted, shown};
-use crate::mechanism::{Coordinate, CoordinateKind, Mechanism, Span, Stop};
+use crate::mechanism::{Coordinate, CoordinateKind, Span, Stop};
 
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
@@ -50,14 +50,8 @@ pub(super) type AnyStop =
     AnyOf<(CoordinateKeys<'static>, StopKeys<'static>), (OfKeys<'static>, StopKeys<'static>)>;
 
 impl<'a> Context<'a> {
-    /// Reads a stop in a mechanism whose measures and drivers are read, as far as they can be;
-    /// `declared` returns whether the file has a measure or driver of a name.
-    pub(super) fn stop(
-        &mut self,
-        entry: Entry<'a>,
-        mechanism: &Mechanism,
-        declared: impl Fn(&str) -> bool,
-    ) -> Option<Stop> {
+    /// Reads a stop, after the measures and drivers.
+    pub(super) fn stop(&mut self, entry: Entry<'a>) -> Option<Stop> {
         let fields = self.entry_fields(entry, "stop")?;
         let has = |key| fields.table.contains_key(key);
         let (place, has) = match (has("coordinate"), has("of")) {
@@ -68,16 +62,10 @@ impl<'a> Context<'a> {
             }
             (false, true) => {
                 let (keys, limits) = self.table::<(OfKeys<'a>, StopKeys<'a>)>(&fields);
-                let of = keys.of.value.filter(|(name, span)| {
-                    let found = declared(name);
-                    if !found {
-                        self.no_such_coordinate(mechanism, name, span);
-                    }
-                    found
+                let (name, coordinate) = keys.of.value.map_or((None, None), |(name, span)| {
+                    (Some(name.to_owned()), self.coordinate_of(name, &span))
                 });
-                let coordinate = of.as_ref().and_then(|(name, _)| named(mechanism, name));
-                let of = of.map(|(name, _)| name.to_owned());
-                return self.limited(entry, (coordinate, of), limits);
+                return self.limited(entry, (coordinate, name), limits);
             }
             (true, true) => ("both", "and"),
             (false, false) => ("neither", "nor"),
@@ -91,21 +79,24 @@ impl<'a> Context<'a> {
         None
     }
 
-    /// Reports a name of neither a measure that is a coordinate nor a driver.
-    fn no_such_coordinate(&mut self, mechanism: &Mechanism, name: &str, span: &Span) {
-        if mechanism.derived.iter().any(|measure| measure.name == name) {
+    /// Returns the coordinate of a measure or driver; `None` with an error, its own or one here.
+    fn coordinate_of(&mut self, name: &str, span: &Span) -> Option<Coordinate> {
+        let mut all = self.coordinates.iter();
+        if let Some((_, coordinate)) = all.find(|(own, _)| *own == name) {
+            return *coordinate;
+        }
+        if self.computed.contains(&name) {
             let message = format!("{} is a computed measure", quoted(name));
             self.error(code::UNKNOWN_COORDINATE, span.clone(), message)
                 .suggest("a stop limits a coordinate: name one that the measure is computed from");
-            return;
+            return None;
         }
-        let measures = mechanism.measures.iter().map(|measure| &measure.name);
-        let drivers = mechanism.drivers.iter().map(|driver| &driver.name);
-        let candidates: Vec<&str> = measures.chain(drivers).map(String::as_str).collect();
+        let candidates: Vec<&str> = self.coordinates.iter().map(|(own, _)| *own).collect();
         let message = format!("no measure or driver {}", quoted(name));
         let help = names::help(name, &candidates, &[]);
         self.error(code::UNKNOWN_COORDINATE, span.clone(), message)
             .help = help;
+        None
     }
 
     /// Checks the limits of a coordinate, which is `None` after an error.
@@ -150,14 +141,4 @@ impl<'a> Context<'a> {
             max,
         })
     }
-}
-
-/// Returns the coordinate of a measure or driver.
-fn named(mechanism: &Mechanism, name: &str) -> Option<Coordinate> {
-    let measures = mechanism.measures.iter();
-    let measures = measures.map(|measure| (&measure.name, measure.coordinate));
-    let drivers = mechanism.drivers.iter();
-    let drivers = drivers.map(|driver| (&driver.name, driver.coordinate));
-    let mut all = measures.chain(drivers);
-    all.find_map(|(own, coordinate)| (own == name).then_some(coordinate))
 }

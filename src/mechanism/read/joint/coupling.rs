@@ -98,14 +98,12 @@ impl<'a> Context<'a> {
         let law = keys.law.optional()?;
         let phase = phase(keys.phase)?;
         let value = keys.equation.value?;
-        if self.lacks_coordinates {
-            return None;
-        }
-        let names = self.coordinates.iter().map(|(name, _)| *name);
-        let kinds = self
-            .coordinates
-            .iter()
-            .map(|(_, coordinate)| coordinate.kind);
+        let declared = self.coordinates.iter();
+        let declared: Vec<(&str, Coordinate)> = declared
+            .map(|&(name, coordinate)| Some((name, coordinate?)))
+            .collect::<Option<_>>()?;
+        let names = declared.iter().map(|(name, _)| *name);
+        let kinds = declared.iter().map(|(_, coordinate)| coordinate.kind);
         let dimension = |kind: CoordinateKind| kind.unit().dimension;
         let moving = MovingNames {
             known: names.zip((0..).map(Variable::Coordinate)).collect(),
@@ -121,14 +119,11 @@ impl<'a> Context<'a> {
         };
         let parsed = self.equation(value, &moving)?;
         let places = CoordinateEquation::places(&parsed.expression);
-        self.check_coupled(&places, value)?;
         let coordinates: Vec<(String, Coordinate)> = places
             .iter()
-            .map(|&place| {
-                let (name, coordinate) = self.coordinates[place];
-                (name.to_owned(), coordinate)
-            })
+            .map(|&place| (declared[place].0.to_owned(), declared[place].1))
             .collect();
+        self.check_coupled(&coordinates, value)?;
         let difference = parsed.expression.with_coordinates(&places);
         let (_, first) = coordinates.first()?;
         let (_, last) = coordinates.last()?;
@@ -155,21 +150,24 @@ impl<'a> Context<'a> {
     }
 
     /// Refuses an equation of no coordinates or of too many, or of coordinates of too many bodies.
-    fn check_coupled(&mut self, places: &[usize], value: &'a Value<'a>) -> Option<()> {
-        let coordinates = places.iter().map(|&place| self.coordinates[place].1);
-        let markers = coordinates.flat_map(|coordinate| coordinate.markers());
+    fn check_coupled(
+        &mut self,
+        coordinates: &[(String, Coordinate)],
+        value: &'a Value<'a>,
+    ) -> Option<()> {
+        let markers = coordinates.iter().flat_map(|(_, c)| c.markers());
         let bodies: HashSet<_> = markers.filter_map(|m| self.carriers[m.index()]).collect();
         let most = |count, things, most: usize| {
             format!("the equation has {count} {things}, {most} at most are possible")
         };
-        let (message, help) = if places.is_empty() {
+        let (message, help) = if coordinates.is_empty() {
             (
                 "the equation has no coordinate".to_owned(),
                 "name drivers and measures: `travel = pitch*turn/(2*pi)`",
             )
-        } else if places.len() > MOST_COUPLED {
+        } else if coordinates.len() > MOST_COUPLED {
             (
-                most(places.len(), "coordinates", MOST_COUPLED),
+                most(coordinates.len(), "coordinates", MOST_COUPLED),
                 "use several couplings",
             )
         } else if bodies.len() > MOST_BODIES {
