@@ -69,7 +69,7 @@ impl Solver {
             redundancy::choose_rows(&mut compiled, &mut state, &path)?;
         }
         Ok(Self {
-            tracker: PathTracker::new(&compiled.system),
+            tracker: PathTracker::new(&compiled),
             compiled,
             state,
         })

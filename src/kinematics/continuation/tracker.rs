@@ -24,7 +24,6 @@ use crate::kinematics::singular::{
     self, DriverLimit, FruitlessSearches, NEAR, SingularKind, SingularPoint,
 };
 use crate::kinematics::state::{State, UNIT_RATE};
-use crate::kinematics::system::System;
 use crate::kinematics::tolerances::SAME_PLACE_ON_PATH;
 use crate::mechanism::{DriverId, Jet};
 
@@ -47,13 +46,14 @@ pub(in crate::kinematics) struct PathTracker {
 
 impl PathTracker {
     /// Makes the storage.
-    pub(in crate::kinematics) fn new(system: &System) -> Self {
+    pub(in crate::kinematics) fn new(compiled: &CompiledMechanism) -> Self {
+        let system = &compiled.system;
         Self {
             drivers: PathDrivers::new(system.mechanism()),
             bounds: StepBounds::new(system),
             crossed: Vec::new(),
             fruitless: FruitlessSearches::default(),
-            stops: StopWatch::new(system.limited()),
+            stops: StopWatch::new(compiled.stops.len()),
             ignores_stops: false,
         }
     }

@@ -196,14 +196,6 @@ impl System {
         })
     }
 
-    /// Returns the number of coordinates and places on curves with limits.
-    pub(in crate::kinematics) fn limited(&self) -> usize {
-        let open = self
-            .curves()
-            .filter(|(_, curve)| curve.last_end().is_some());
-        self.mechanism.stops.len() + open.count()
-    }
-
     /// Returns the mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
