@@ -39,7 +39,7 @@ impl DerivedMeasure {
     /// Returns the highest order of the signals that it uses; forces depend on accelerations.
     #[must_use]
     pub fn order(&self) -> Order {
-        if self.forces().next().is_some() {
+        if self.uses_forces() {
             return Order::Acceleration;
         }
         let orders = self.signals().map(|(_, order)| order);
@@ -54,6 +54,12 @@ impl DerivedMeasure {
                 Variable::Force(quantity) => Some(quantity),
                 _ => None,
             })
+    }
+
+    /// Returns whether it uses a force.
+    #[must_use]
+    pub fn uses_forces(&self) -> bool {
+        self.forces().next().is_some()
     }
 
     /// Returns whether it uses reactions of joints or constraints.

@@ -129,7 +129,7 @@ impl OutputSource {
     pub fn uses_forces(self, mechanism: &Mechanism) -> bool {
         match self {
             Self::Signal(..) => false,
-            Self::Derived(index) => mechanism.derived[index].forces().next().is_some(),
+            Self::Derived(index) => mechanism.derived[index].uses_forces(),
             Self::Force(_) => true,
         }
     }

@@ -34,7 +34,7 @@ impl DerivedRange {
         let speed = speed.unwrap_or(UNIT_SPEED);
         let mut follower = Follower::new(solver, driver, range, speed);
         let mut measures = follower.mechanism.derived.iter();
-        if measures.any(|measure| measure.forces().next().is_some()) {
+        if measures.any(DerivedMeasure::uses_forces) {
             follower.solution.seek_forces(follower.solver);
         }
         let derived = 0..follower.mechanism.derived.len();
