@@ -1,5 +1,4 @@
-//! Checks the geometry of joints: the distances of wheels, the hollows of cams, the ends of
-//! curves, the arcs of ropes.
+//! Checks the geometry of joints: the distances of wheels, the hollows of cams, the arcs of ropes.
 //!
 //! The equations of these joints hold all the same; a warning tells that the drawing does not fit
 //! them.
