@@ -79,7 +79,7 @@ pub use analysis::{
 pub use assembly::estimate::Move;
 pub use constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, CouplingLaw, JointUnknownId, LawId,
-    MarkerPose, ProfileId,
+    MarkerPose, ParameterCoefficients, ProfileId,
 };
 pub use continuation::{Blocked, Progress, Reason};
 pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Remedy, Verdict};

@@ -1,6 +1,6 @@
 //! Equations between coordinates.
 
-use super::{Coordinate, Expression, Motion, ParameterId, Phase, Variable};
+use super::{Coordinate, Expression, Motion, Phase, Variable};
 
 /// Most coordinates in one equation.
 pub const MOST_COUPLED: usize = 8;
@@ -24,12 +24,6 @@ pub struct CoordinateEquation {
 }
 
 impl CoordinateEquation {
-    /// Returns the parameters that it uses; one may come twice.
-    pub fn parameters(&self) -> impl Iterator<Item = ParameterId> {
-        let of_law = self.law.iter().flat_map(Motion::parameters);
-        self.difference.parameters().chain(of_law)
-    }
-
     /// Returns the places of the coordinates in the equation, in the order in which they occur.
     pub(super) fn places(difference: &Expression) -> Vec<usize> {
         let mut places = Vec::new();

@@ -8,7 +8,7 @@ use crate::kinematics::Error;
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{
     BodyId, Expression, Interval, Jet, Jet3, MarkerId, Mechanism, Motion, MotionInForce, Number,
-    ProfileInForce,
+    ParameterId, ProfileInForce,
 };
 
 /// Returns a vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
@@ -111,6 +111,24 @@ pub(in crate::kinematics) fn rotate(cos: f64, sin: f64, s: Vector2<f64>) -> Vect
 /// A number in a relation that depends on parameters: index into the system's coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CoefficientId(pub usize);
+
+/// The coefficients that have the values of the parameters of an expression.
+#[derive(Clone, Debug, Default)]
+pub struct ParameterCoefficients(pub Vec<(ParameterId, CoefficientId)>);
+
+impl ParameterCoefficients {
+    /// Returns the coefficient of a parameter.
+    ///
+    /// # Panics
+    ///
+    /// If the expression does not use the parameter.
+    #[must_use]
+    pub fn of(&self, parameter: ParameterId) -> CoefficientId {
+        let mut known = self.0.iter();
+        let found = known.find(|(id, _)| *id == parameter);
+        found.expect("all its parameters are coefficients").1
+    }
+}
 
 /// A joint unknown, which belongs to no body: its index behind the unknowns of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,7 +234,7 @@ impl Configuration {
         coefficients: &[Coefficient],
         parameters: &[f64],
     ) -> Result<(), Error> {
-        let value = |p: crate::mechanism::ParameterId| parameters[p.index()];
+        let value = |p: ParameterId| parameters[p.index()];
         for (index, (frame, marker)) in self.frames.iter_mut().zip(&mechanism.markers).enumerate() {
             frame.position = Vector2::new(
                 marker.position[0].evaluate(&value, 0.0),

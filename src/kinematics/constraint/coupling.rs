@@ -1,7 +1,7 @@
 //! An equation between coordinates.
 
 use super::CoordinateRelation;
-use super::configuration::{CoefficientId, Configuration, LawId};
+use super::configuration::{CoefficientId, Configuration, LawId, ParameterCoefficients};
 use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
 use super::moving_configuration::{Enclosed, Moving, Varied, VariedMechanism, bend};
@@ -45,8 +45,8 @@ pub enum CoupledFunction {
 pub struct CoupledExpression {
     /// Over the coordinates by their places.
     pub expression: Expression,
-    /// Its parameters, each with the coefficient that has its value.
-    pub parameters: Vec<(ParameterId, CoefficientId)>,
+    /// Its parameters.
+    pub parameters: ParameterCoefficients,
     /// The table that it calls.
     pub law: Option<LawId>,
     /// The place of the coordinate on which all parts that jump depend, if it is one.
@@ -82,18 +82,14 @@ const MOST_LOOKS: usize = 600;
 /// The numbers in an expression.
 struct Inputs<'a, N, C, L> {
     coordinates: [N; MOST_COUPLED],
-    parameters: &'a [(ParameterId, CoefficientId)],
+    parameters: &'a ParameterCoefficients,
     coefficient: C,
     law: L,
 }
 
 impl<N: Number, C: Fn(CoefficientId) -> N, L: Fn(N) -> N> Values<N> for Inputs<'_, N, C, L> {
     fn parameter(&self, id: ParameterId) -> N {
-        let mut parameters = self.parameters.iter();
-        let own = parameters.find(|(parameter, _)| *parameter == id);
-        own.map_or_else(N::unknown, |(_, coefficient)| {
-            (self.coefficient)(*coefficient)
-        })
+        (self.coefficient)(self.parameters.of(id))
     }
 
     fn variable(&self, which: Variable) -> N {

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::configuration::{CoefficientId, Configuration, JointUnknownId, MarkerPose, perp};
+use super::configuration::{
+    CoefficientId, Configuration, JointUnknownId, MarkerPose, ParameterCoefficients, perp,
+};
 use super::definition::{Axis, Constraint, Dimension, Formula, Incidence, JointUnknown};
 use super::gradient::Gradient;
 use super::moving_configuration::{Moving, VariedMechanism, dot, quarter_turn};
@@ -13,7 +15,7 @@ use super::point::angular_velocity;
 use super::projection::Projection;
 use super::region::{Region, chord};
 use crate::mechanism::{
-    Expression, Interval, Jet, Jet3, MarkerId, Mechanism, Number, ParameterId, PointPath, Taylor,
+    Expression, Interval, Jet, Jet3, MarkerId, Mechanism, Number, PointPath, Taylor,
 };
 
 /// Parts of a curve that a search for its nearest point begins with.
@@ -50,8 +52,8 @@ pub struct FormulaPath {
     pub components: [Expression; 2],
     /// The variable at both ends.
     pub ends: [CoefficientId; 2],
-    /// The parameters in `components`, as coefficients.
-    pub parameters: Vec<(ParameterId, CoefficientId)>,
+    /// The parameters in `components`.
+    pub parameters: ParameterCoefficients,
 }
 
 /// A number for which a curve gives derivatives: plain, or bounds.
@@ -124,12 +126,8 @@ impl CurvePath {
                 })
             }
             Shape::Formula(formula) => {
-                let [first, last] = formula.ends.map(&coefficient);
-                let way = S::constant((last - first) * self.part);
-                let variable = Jet3::linear(S::constant(first) + way * s, way);
-                let parameter = |p| Jet3::constant(coefficient(formula.coefficient(p)));
-                let components = formula.components.each_ref();
-                components.map(|component| component.evaluate(&parameter, variable))
+                let part = Jet3::linear(s * self.part, S::constant(self.part));
+                formula.at(part, |id| Jet3::constant(coefficient(id)))
             }
         }
     }
@@ -158,12 +156,8 @@ impl CurvePath {
             Shape::Points(path) => N::on_points(path, s),
             Shape::Formula(formula) => {
                 type WithSlope<N> = Taylor<N, 1>;
-                let [first, last] = formula.ends.map(|end| at.coefficient(end));
-                let way = last - first;
-                let variable = WithSlope::linear(first + way * s, way);
-                let parameter = |p| WithSlope::fixed(at.coefficient(formula.coefficient(p)));
-                let components = formula.components.each_ref();
-                let [x, y] = components.map(|component| component.evaluate(&parameter, variable));
+                let part = WithSlope::linear(s, N::constant(1.0));
+                let [x, y] = formula.at(part, |id| WithSlope::fixed(at.coefficient(id)));
                 [[x.value, y.value], [x.first(), y.first()]]
             }
         };
@@ -185,11 +179,8 @@ impl CurvePath {
                 Taylor::new(c.value, [c.first(), c.second()])
             }
             Shape::Formula(formula) => {
-                let [first, last] = formula.ends.map(&coefficient);
-                let way = S::constant((last - first) * self.part);
-                let variable = Taylor::linear(S::constant(first) + way * s, way);
-                let parameter = |p| Taylor::constant(coefficient(formula.coefficient(p)));
-                formula.components[component].evaluate(&parameter, variable)
+                let part = Taylor::linear(s * self.part, S::constant(self.part));
+                formula.component(component, part, |id| Taylor::constant(coefficient(id)))
             }
         }
     }
@@ -201,10 +192,21 @@ impl CurvePath {
 }
 
 impl FormulaPath {
-    fn coefficient(&self, parameter: ParameterId) -> CoefficientId {
-        let mut known = self.parameters.iter();
-        let found = known.find(|(id, _)| *id == parameter);
-        found.expect("all its parameters are coefficients").1
+    /// Returns x and y at a part of the way between the ends.
+    fn at<N: Number>(&self, part: N, coefficient: impl Fn(CoefficientId) -> N) -> [N; 2] {
+        [0, 1].map(|component| self.component(component, part, &coefficient))
+    }
+
+    fn component<N: Number>(
+        &self,
+        component: usize,
+        part: N,
+        coefficient: impl Fn(CoefficientId) -> N,
+    ) -> N {
+        let [first, last] = self.ends.map(&coefficient);
+        let variable = first + (last - first) * part;
+        let parameter = |id| coefficient(self.parameters.of(id));
+        self.components[component].evaluate(&parameter, variable)
     }
 }
 

@@ -8,7 +8,7 @@ use super::moving_configuration::{
 use super::*;
 use crate::kinematics::{
     CamProfile, Coefficient, CoefficientId, Configuration, CouplingLaw, JointUnknownId, LawId,
-    ProfileId,
+    ParameterCoefficients, ProfileId,
 };
 use crate::mechanism::{
     BodyId, CoordinateEquation, Curve, CurveShape, Dual, Expression, Interval, JointKind, MarkerId,
@@ -217,7 +217,7 @@ fn samples_of_curves(
             let formula = FormulaPath {
                 components: [x.clone(), y.clone()],
                 ends: [CoefficientId(0), CoefficientId(1)],
-                parameters: Vec::new(),
+                parameters: ParameterCoefficients::default(),
             };
             CurvePath::of_formula(formula, offset, is_closed)
         };
@@ -273,7 +273,7 @@ fn coupling(equation: &CoordinateEquation) -> Coupling {
             },
             None => CoupledFunction::Expression(CoupledExpression {
                 expression: equation.difference.clone(),
-                parameters: Vec::new(),
+                parameters: ParameterCoefficients::default(),
                 law: equation.law.as_ref().map(|_| LawId(0)),
                 jumps_by: None,
             }),

@@ -1,8 +1,11 @@
 //! The equations of each kind of joint.
 
+use std::collections::BTreeSet;
+
 use crate::kinematics::Origin;
 use crate::kinematics::constraint::configuration::{
-    CamProfile, Coefficient, CoefficientId, CouplingLaw, JointUnknownId, LawId, ProfileId,
+    CamProfile, Coefficient, CoefficientId, CouplingLaw, JointUnknownId, LawId,
+    ParameterCoefficients, ProfileId,
 };
 use crate::kinematics::constraint::{
     AlongCurve, Axis, Coincidence, Constraint, Contour, CoordinateRelation, CoupledExpression,
@@ -41,6 +44,18 @@ impl JointParts {
             what: what.into(),
         });
         CoefficientId(self.coefficients.len() - 1)
+    }
+
+    /// Adds the parameters of expressions as coefficients.
+    fn parameter_coefficients<const N: usize>(
+        &mut self,
+        expressions: [&Expression; N],
+        what: &str,
+    ) -> ParameterCoefficients {
+        let used = expressions.into_iter().flat_map(Expression::parameters);
+        let used: BTreeSet<ParameterId> = used.collect();
+        let mut coefficient = |id| (id, self.coefficient(&Expression::parameter(id), what));
+        ParameterCoefficients(used.into_iter().map(&mut coefficient).collect())
     }
 
     /// Adds a cam's profile.
@@ -238,22 +253,12 @@ fn lie(
     let path = match &curve.shape {
         CurveShape::Points(path) => CurvePath::through_points(path.clone(), offset),
         CurveShape::Formula { x, y, ends } => {
-            let mut used: Vec<ParameterId> = x.parameters().chain(y.parameters()).collect();
-            used.sort_unstable();
-            used.dedup();
             let formula = FormulaPath {
                 components: [x.clone(), y.clone()],
                 ends: ends
                     .each_ref()
                     .map(|end| parts.coefficient(end, what.clone())),
-                parameters: (used.into_iter())
-                    .map(|p| {
-                        (
-                            p,
-                            parts.coefficient(&Expression::parameter(p), what.clone()),
-                        )
-                    })
-                    .collect(),
+                parameters: parts.parameter_coefficients([x, y], &what),
             };
             CurvePath::of_formula(formula, offset, curve.closed)
         }
@@ -347,9 +352,7 @@ fn coupling(
         },
         None => CoupledFunction::Expression(CoupledExpression {
             expression: equation.difference.clone(),
-            parameters: (equation.difference.parameters())
-                .map(|id| (id, parts.coefficient(&Expression::parameter(id), what)))
-                .collect(),
+            parameters: parts.parameter_coefficients([&equation.difference], what),
             jumps_by: match equation.difference.jumping_coordinates()[..] {
                 [place] => Some(place),
                 _ => None,
