@@ -22,7 +22,12 @@ use super::{Made, joint_type};
 
 joint_type! {
     own markers;
-    "coupling" or "screw" or "mimic" or "equation" or "differential" or "geneva" => |keys, context| context.coupling(keys);
+    "coupling" or "equation"
+        or "screw" as "type = \"coupling\", equation = \"travel = pitch*turn/(2*pi)\""
+        or "mimic" as "type = \"coupling\", equation = \"right = -left\""
+        or "differential" as "type = \"coupling\", equation = \"cage = (left + right)/2\""
+        or "geneva" as "type = \"coupling\", equation = \"wheel = law(crank)\", law = …"
+        => |keys, context| context.coupling(keys);
 
     /// An equation between coordinates: of drivers, and of measures that are no formulas.
     struct Coupling<'a> {
@@ -35,17 +40,6 @@ joint_type! {
         law: Law = LawOfOneArgument,
         /// Constant of left - right; zero if left out, "drawn" for what the estimates give.
         phase: Phase = PhaseOf(NUMBER),
-    }
-}
-
-/// Returns the keys of a coupling that another term stands for.
-pub(super) fn written(term: &str) -> Option<&'static str> {
-    match term.to_ascii_lowercase().as_str() {
-        "screw" => Some("type = \"coupling\", equation = \"travel = pitch*turn/(2*pi)\""),
-        "mimic" => Some("type = \"coupling\", equation = \"right = -left\""),
-        "differential" => Some("type = \"coupling\", equation = \"cage = (left + right)/2\""),
-        "geneva" => Some("type = \"coupling\", equation = \"wheel = law(crank)\", law = …"),
-        _ => None,
     }
 }
 

@@ -12,7 +12,11 @@ use crate::mechanism::{Curve, CurveShape, Expression, Jet, JointKind, PointPath,
 use super::joint_type;
 
 joint_type! {
-    "curve" or "track" or "point_on_curve" or "groove" or "path" => |keys, context| context.curve(keys);
+    "curve" or "path"
+        or "track" as "type = \"curve\", points = \"track.csv\""
+        or "groove" as "type = \"curve\", points = \"groove.csv\", closed = true"
+        or "point_on_curve" as "type = \"curve\", x = \"0.5*s\", y = \"0.1*cos(pi*s)\""
+        => |keys, context| context.curve(keys);
 
     /// The point of marker j stays on a curve in the frame of marker i.
     #[one_of(points, x, code::BAD_TABLE, "a curve is `points = \"track.csv\"`, or `x` and `y` as expressions in `s`")]

@@ -50,17 +50,20 @@ type Made = (JointKind, [MarkerId; 2]);
 pub(super) struct JointType {
     /// Name under `type`.
     name: &'static str,
-    /// Other terms for it.
-    synonyms: &'static [&'static str],
+    /// Other terms for it, each with the keys to write for it where the name alone says too little.
+    synonyms: &'static [(&'static str, Option<&'static str>)],
     /// Reads the keys of the type.
     read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<Made>,
     #[cfg(feature = "cli")]
     schema: fn() -> serde_json::Value,
 }
 
-/// Declares a type of joint: its name and other terms for it, its keys besides those of every
-/// joint, and the joint that they make. One with `own markers` reads these too, and returns i and j.
+/// Declares a type of joint: its name and other terms for it, some with the keys to write for them,
+/// its keys besides those of every joint, and the joint that they make. One with `own markers` reads
+/// these too, and returns i and j.
 macro_rules! joint_type {
+    (@keys) => { None };
+    (@keys $keys:literal) => { Some($keys) };
     (own markers; $($rest:tt)+) => {
         $crate::mechanism::read::joint::joint_type! {
             @by ($crate::mechanism::read::joint::read_own)
@@ -80,7 +83,7 @@ macro_rules! joint_type {
     };
     (
         @by ($read:path) [$common:ty]
-        $name:literal $(or $synonym:literal)* => $kind:expr;
+        $name:literal $(or $synonym:literal $(as $written:literal)?)* => $kind:expr;
         $(#[$($attribute:tt)+])+
         struct $keys:ident<$life:lifetime> { $($key:tt)* }
     ) => {
@@ -91,7 +94,10 @@ macro_rules! joint_type {
 
         pub(super) static TYPE: $crate::mechanism::read::joint::JointType = $crate::mechanism::read::joint::JointType {
             name: $name,
-            synonyms: &[$($synonym),*],
+            synonyms: &[$((
+                $synonym,
+                $crate::mechanism::read::joint::joint_type!(@keys $($written)?),
+            )),*],
             read: |context, fields| {
                 let kind: for<$life> fn($keys<$life>, &mut $crate::mechanism::read::context::Context<$life>) -> _ = $kind;
                 $read(context, fields, kind)
@@ -149,12 +155,13 @@ const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT
         .collect()
 })
 .with_synonyms(|text| {
-    let is_meant = |term: &&str| term.eq_ignore_ascii_case(text);
-    let mut joint_types = JOINT_TYPES.iter();
-    let meant = joint_types.find(|joint_type| joint_type.synonyms.iter().any(is_meant));
-    meant.map(|joint_type| match coupling::written(text) {
-        Some(written) => format!("write `{written}`"),
-        None => word_here(joint_type.name),
+    JOINT_TYPES.iter().find_map(|joint_type| {
+        let mut synonyms = joint_type.synonyms.iter();
+        let (_, written) = synonyms.find(|(term, _)| term.eq_ignore_ascii_case(text))?;
+        Some(match written {
+            Some(keys) => format!("write `{keys}`"),
+            None => word_here(joint_type.name),
+        })
     })
 });
 

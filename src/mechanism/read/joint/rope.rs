@@ -19,7 +19,10 @@ use super::joint_type;
 
 joint_type! {
     own markers;
-    "rope" or "cable" or "pulley" or "tackle" or "string" or "cord" => |keys, context| context.rope(keys);
+    "rope" or "cable" or "string" or "cord"
+        or "pulley" as "type = \"rope\", markers = [\"ground.A\", { marker = \"block.P\", radius = 0.05, side = \"left\" }, \"ground.B\"], length = 1.5"
+        or "tackle" as "type = \"rope\", markers = [\"ground.A\", \"block.P\"], parts = [4], length = 1.5"
+        => |keys, context| context.rope(keys);
 
     /// A rope that keeps its length, over points and pulleys.
     struct RopeKeys<'a> {
