@@ -167,8 +167,7 @@ fn pull(
     anchor: impl Fn(MarkerId) -> Anchor,
 ) -> Size {
     let before = &rope.points[rope.points.len() - 2];
-    let pulley = before.pulley.as_ref();
-    let radius = pulley.map_or(0.0, |p| p.side.sign() * p.radius.value(parameters));
+    let radius = before.radius(&|id| parameters[id.index()]);
     let parts = rope.parts[rope.parts.len() - 1].value(parameters);
     Size::Pull(joint, parts, anchor(before.marker), radius)
 }

@@ -34,6 +34,22 @@ pub enum CurveShape {
     },
 }
 
+impl CurveShape {
+    /// Returns x and y \[m\] at a place, from 0 to 1 along the curve, with three derivatives by it.
+    pub(crate) fn at(&self, parameter: &impl Fn(ParameterId) -> f64, place: f64) -> [Jet3; 2] {
+        match self {
+            Self::Points(path) => path.at(place),
+            Self::Formula { x, y, ends } => {
+                let [first, last] = ends.each_ref().map(|end| end.evaluate(parameter, 0.0));
+                let way = last - first;
+                let variable = Jet3::linear(first + way * place, way);
+                let parameter = |id| Jet3::constant(parameter(id));
+                [x, y].map(|component| component.evaluate(&parameter, variable))
+            }
+        }
+    }
+}
+
 impl Curve {
     /// Returns the parameters that it uses; one may come twice.
     pub(crate) fn parameters(&self) -> impl Iterator<Item = ParameterId> {

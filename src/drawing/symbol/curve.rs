@@ -1,7 +1,7 @@
 //! Curves along which points move.
 
 use super::*;
-use crate::mechanism::{Curve, CurveShape};
+use crate::mechanism::Curve;
 
 /// A curve of a body or of ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,20 +17,12 @@ const CHORDS: u32 = 240;
 
 /// Composes a curve and the point on it.
 pub(super) fn compose(composer: &mut Composer, [at, point]: [Anchor; 2], curve: &Curve) {
-    let place = |s: f64| match &curve.shape {
-        CurveShape::Points(path) => path.at(s).map(|c| c.value),
-        CurveShape::Formula { x, y, ends } => {
-            let [first, last] = ends.each_ref().map(|end| composer.value(end));
-            let variable = first + (last - first) * s;
-            [x, y].map(|c| c.evaluate(&|p| composer.parameter(p), variable))
-        }
-    };
     let center = Point::from(at.position);
     let along = direction(at.angle);
     let parts = (0..=CHORDS).map(|part| f64::from(part) / f64::from(CHORDS));
     let points = parts.map(|s| {
-        let [x, y] = place(s);
-        (center + x * along + y * across(along)).into()
+        let [x, y] = curve.shape.at(&|id| composer.parameter(id), s);
+        (center + x.value * along + y.value * across(along)).into()
     });
     let points = points.collect();
     composer.add(Pin {

@@ -111,10 +111,10 @@ fn points_of(joint: &Joint, anchor: impl Fn(MarkerId) -> Anchor) -> Vec<Vec<Anch
     let [from, to] = [joint.from, joint.to].map(&anchor);
     match &joint.kind {
         JointKind::Revolute | JointKind::Weld => vec![vec![from, to]],
-        JointKind::Translational | JointKind::Slot | JointKind::RevoluteTranslational { .. } => {
-            vec![vec![to]]
-        }
-        JointKind::Curve(_) => vec![vec![to]],
+        JointKind::Translational
+        | JointKind::Slot
+        | JointKind::RevoluteTranslational { .. }
+        | JointKind::Curve(_) => vec![vec![to]],
         JointKind::Link { .. } => vec![vec![from], vec![to]],
         JointKind::Rope(rope) => {
             let points = rope.points.iter();

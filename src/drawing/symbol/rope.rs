@@ -1,7 +1,7 @@
 //! Ropes over points and pulleys.
 
 use super::*;
-use crate::mechanism::{Pulley, Rope as RopeJoint};
+use crate::mechanism::Rope as RopeJoint;
 
 /// A rope, taut between points and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,13 +16,8 @@ pub struct Rope {
 pub(super) fn compose(composer: &mut Composer, rope: &RopeJoint) {
     let points = rope.points.iter();
     let points: Vec<Anchor> = points.map(|point| composer.anchor(point.marker)).collect();
-    let radius = |composer: &Composer, pulley: &Pulley| {
-        pulley.side.sign() * composer.value(&pulley.radius)
-    };
-    let radii = rope.points.iter().map(|point| {
-        let pulley = point.pulley.as_ref();
-        pulley.map_or(0.0, |pulley| radius(composer, pulley))
-    });
+    let radii = rope.points.iter();
+    let radii = radii.map(|point| point.radius(&|id| composer.parameter(id)));
     let radii = radii.collect();
     for point in &points {
         pin::compose(composer, [*point; 2]);

@@ -7,7 +7,7 @@ use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Flag, Item, Kind, schema};
 use crate::mechanism::read::number::{Formula, LENGTH, NUMBER, Quantity};
 use crate::mechanism::read::points::PointKeys;
-use crate::mechanism::{Curve, CurveShape, Expression, Jet, JointKind, PointPath, Span, Variable};
+use crate::mechanism::{Curve, CurveShape, Expression, JointKind, PointPath, Span, Variable};
 
 use super::joint_type;
 
@@ -129,20 +129,10 @@ impl<'a> Context<'a> {
         if !self.knows(curve.parameters()) {
             return Some(());
         }
-        let number = |e: &Expression| e.evaluate(&|p| self.known_value(p), 0.0);
-        let jets = |s: f64| match &curve.shape {
-            CurveShape::Points(path) => path
-                .at(s)
-                .map(|c| Jet::new(c.value, [c.first(), c.second()])),
-            CurveShape::Formula { x, y, ends } => {
-                let [first, last] = ends.each_ref().map(number);
-                let way = last - first;
-                let variable = Jet::new(first + way * s, [way, 0.0]);
-                let parameter = |p| Jet::constant(self.known_value(p));
-                [x, y].map(|component| component.evaluate(&parameter, variable))
-            }
-        };
-        let offset = curve.offset.as_ref().map_or(0.0, number);
+        let parameter = |id| self.known_value(id);
+        let jets = |s| curve.shape.at(&parameter, s);
+        let offset = curve.offset.as_ref();
+        let offset = offset.map_or(0.0, |offset| offset.evaluate(&parameter, 0.0));
         let places = (0..=SAMPLES).map(|part| f64::from(part) / f64::from(SAMPLES));
         let mut largest = 0.0_f64;
         let mut fault = None;
