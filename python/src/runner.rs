@@ -280,7 +280,7 @@ impl Runner {
             free.balance(solver, solution, &part).map_err(stopped)?;
         }
         part.loads(scenario.times[0], &mut solution.loads);
-        solution.driver_rates.copy_from_slice(free.drivers());
+        free.tell(solution);
         free.linearize(solver, solution, outputs).map_err(stopped)
     }
 
@@ -377,7 +377,7 @@ impl Runner {
     /// They do not exist at a singular position.
     pub(crate) fn solve(&mut self, row: usize) -> Result<(), Error> {
         if let Some((free, _)) = &self.free {
-            (self.solution.driver_rates).copy_from_slice(free.drivers());
+            free.tell(&mut self.solution);
         }
         for (place, sizes) in &self.scenario.loads {
             if let Some(load) = self.solution.loads.get_mut(*place) {

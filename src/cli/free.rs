@@ -56,7 +56,7 @@ impl AtRest {
                 "{file}: the mechanism has no freedom: all that moves is driven"
             )));
         };
-        solution.driver_rates.copy_from_slice(free.drivers());
+        free.tell(&mut solution);
         Ok(Self {
             file: file.to_owned(),
             solver,

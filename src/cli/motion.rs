@@ -134,6 +134,9 @@ impl Motion {
                 let until = signals.next_point(start).min(time);
                 free.advance(solver, solution, &part, until)
             });
+            let mechanism = solver.mechanism();
+            let events = free.events().map(|event| event.describe(mechanism));
+            self.notices.extend(events.map(Message::Note));
             moved.map_err(|stop| stop.to_string())?;
             self.tell_passed(time);
         }
@@ -151,7 +154,7 @@ impl Motion {
             }
         }
         if let Some(free) = &self.free {
-            self.solution.driver_rates.copy_from_slice(free.drivers());
+            free.tell(&mut self.solution);
         }
         if self.solution.forces().is_some() {
             self.signals.write_forces(time, &mut self.solution.loads);

@@ -75,7 +75,7 @@ impl ForcePlace {
         });
         let loads = mechanism.forces.iter().enumerate().map(|(index, force)| {
             let load = match &force.load {
-                Load::Coordinate { coordinate, .. } => {
+                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
                     along(coordinate, ForceQuantity::Applied(index, 0))
                 }
                 Load::Marker { marker, axes, .. } => {

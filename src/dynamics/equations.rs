@@ -5,10 +5,13 @@ use nalgebra::{DMatrix, DVector};
 use super::error::Error;
 use super::given::Given;
 use super::integrator::{Failure, System};
+use super::passive::{Passive, PassiveForces};
 use super::state::FreeState;
+use super::triangular::{ascend, descend};
+use super::watch::{Verdict, Watch};
 use crate::kinematics::{
     Blocked, Curve, Direction, EquationsOfMotion, ForceQuantity, Forces, KnownMotion, Path, Pose,
-    Rates, Reason, Solver, SolverChoices,
+    Rates, Reason, Solution, Solver, SolverChoices,
 };
 use crate::mechanism::{DriverId, Jet, Mechanism};
 
@@ -35,6 +38,8 @@ pub(super) struct Equations {
     /// L of J = L Lᵀ.
     factor: DMatrix<f64>,
     accelerations: Vec<f64>,
+    pub(super) passive: PassiveForces,
+    pub(super) watch: Watch,
     /// The trial point at which the equations are.
     pub(super) point: Point,
     /// The last point accepted, with the solver's pose and choices there.
@@ -52,8 +57,9 @@ pub(super) struct Equations {
 pub(super) struct Point {
     /// Value, velocity and acceleration of each driver.
     pub(super) drivers: Vec<Jet>,
-    /// Sizes of the forces that are inputs.
+    /// Sizes of the forces that are inputs, then of passive forces.
     pub(super) loads: Vec<f64>,
+    pub(super) passive: Vec<Passive>,
     /// Kinetic energy, and potential energy of gravity \[J\].
     pub(super) energy: f64,
 }
@@ -62,15 +68,16 @@ impl Point {
     fn copy_from(&mut self, other: &Self) {
         self.drivers.copy_from_slice(&other.drivers);
         self.loads.copy_from_slice(&other.loads);
+        self.passive.copy_from_slice(&other.passive);
         self.energy = other.energy;
     }
 
     /// Returns whether a motion goes on smoothly from one point to another at the same place: with
     /// the same rates of what is given.
-    fn joins(&self, other: &Self, mechanism: &Mechanism) -> bool {
+    fn joins(&self, other: &Self, inputs: usize, mechanism: &Mechanism) -> bool {
         let pairs = self.drivers.iter().zip(&other.drivers);
         let mut pairs = pairs.zip(&mechanism.drivers);
-        self.loads == other.loads
+        self.loads[..inputs] == other.loads[..inputs]
             && pairs.all(|((one, other), driver)| driver.is_free() || one == other)
     }
 }
@@ -83,10 +90,12 @@ impl Equations {
         let freedoms: Vec<_> = freedoms.map(|(index, _)| DriverId(index)).collect();
         let forces = solver.forces();
         let (count, unknowns) = (freedoms.len(), solver.pose().q.len());
+        let passive = PassiveForces::new(solver.mechanism(), count);
         let drivers = solver.pose().drivers.iter();
         let point = Point {
             drivers: drivers.map(|value| Jet::constant(*value)).collect(),
-            loads: vec![0.0; forces.inputs()],
+            loads: vec![0.0; forces.loads()],
+            passive: vec![Passive::NONE; passive.list.len()],
             energy: 0.0,
         };
         let mut equations = Self {
@@ -100,6 +109,8 @@ impl Equations {
             along: vec![0.0; count],
             factor: DMatrix::zeros(count, count),
             accelerations: vec![0.0; count],
+            watch: Watch::default(),
+            passive,
             accepted: point.clone(),
             point,
             pose: solver.pose().clone(),
@@ -109,6 +120,11 @@ impl Equations {
         };
         equations.accept(solver);
         equations
+    }
+
+    /// Returns the number of forces that are inputs.
+    fn inputs(&self) -> usize {
+        self.point.loads.len() - self.passive.loads()
     }
 
     /// Accepts the point at which the equations and the solver are.
@@ -123,53 +139,73 @@ impl Equations {
     pub(super) fn resume(&mut self, solver: &Solver, state: &FreeState) {
         self.point.drivers.copy_from_slice(&state.drivers);
         self.point.loads.copy_from_slice(&state.loads);
+        self.point.passive.copy_from_slice(&state.passive);
         self.point.energy = state.energies[0];
+        self.passive.resume(&state.modes);
+        self.watch.begin();
         self.accept(solver);
     }
 
-    /// Solves the accelerations at the solver's pose for these rates and inputs.
+    /// Solves accelerations and passive forces at the solver's pose for the rates and inputs of a
+    /// solution.
     pub(super) fn solve_at(
         &mut self,
         solver: &mut Solver,
-        drivers: &mut [Jet],
-        loads: &[f64],
-        dx: &mut [f64],
+        solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.point.drivers.copy_from_slice(drivers);
-        self.point.loads.copy_from_slice(loads);
-        self.write(solver, dx)?;
+        self.point.drivers.copy_from_slice(&solution.driver_rates);
+        self.point.loads.copy_from_slice(&solution.loads);
+        self.solve(solver)?;
         for freedom in &self.freedoms {
             let index = freedom.index();
-            drivers[index].derivatives[1] = self.point.drivers[index].second();
+            solution.driver_rates[index].derivatives[1] = self.point.drivers[index].second();
         }
+        solution.loads.copy_from_slice(&self.point.loads);
         Ok(())
     }
 
     /// Completes a direction by the changes of the freedoms' accelerations, for which their efforts
-    /// stay zero: J δü = −δeffort. The point is that at which accelerations were solved last, and
-    /// `rates` are those of q there; `loads` are the changes of the inputs of forces.
+    /// stay zero: J δü = −δeffort, and `loads` by those of passive forces. The point is that at which
+    /// accelerations were solved last, and `rates` are those of q there; `loads` are the changes of the
+    /// inputs of forces.
     pub(super) fn complete(
         &mut self,
         solver: &mut Solver,
         rates: &Rates,
         direction: &mut Direction,
-        loads: &[f64],
+        loads: &mut [f64],
     ) -> Result<(), Error> {
-        let motion = KnownMotion {
-            rates,
-            driver_rates: &self.point.drivers,
-            inputs: &self.point.loads,
-        };
         for freedom in &self.freedoms {
             direction.drivers[freedom.index()].derivatives[1] = 0.0;
         }
-        let changes = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
-        for (change, freedom) in self.accelerations.iter_mut().zip(&self.freedoms) {
+        let Self {
+            passive,
+            point,
+            forces,
+            factor,
+            accelerations,
+            freedoms,
+            ..
+        } = self;
+        let of_passive = loads.len() - passive.loads();
+        let mut coordinates = Vec::new();
+        if !passive.is_empty() {
+            let sensitivity = solver.sensitivity(rates, &point.drivers, direction)?;
+            coordinates = passive.changes(&sensitivity, &point.passive, &mut loads[of_passive..]);
+        }
+        let motion = KnownMotion {
+            rates,
+            driver_rates: &point.drivers,
+            inputs: &point.loads,
+        };
+        let changes = solver.force_sensitivity(motion, direction, loads, forces)?;
+        for (change, freedom) in accelerations.iter_mut().zip(&*freedoms) {
             *change = -changes.change(ForceQuantity::Effort(*freedom))?;
         }
-        self.descend();
-        self.ascend();
-        for (change, freedom) in self.accelerations.iter().zip(&self.freedoms) {
+        descend(factor, accelerations);
+        passive.hold_changes(&coordinates, accelerations, &mut loads[of_passive..]);
+        ascend(factor, accelerations);
+        for (change, freedom) in accelerations.iter().zip(&*freedoms) {
             direction.drivers[freedom.index()].derivatives[1] = *change;
         }
         Ok(())
@@ -193,7 +229,7 @@ impl Equations {
         solver.solve_rates(|driver| self.point.drivers[driver.index()], &mut rates)?;
         jacobian.fill(0.0);
         dx_dt.fill(0.0);
-        let still = vec![0.0; self.point.loads.len()];
+        let mut still = vec![0.0; self.point.loads.len()];
         for column in 0..2 * count {
             let mut direction = Direction::zero(solver.mechanism());
             let state = &mut direction.drivers[self.freedoms[column % count].index()];
@@ -203,14 +239,14 @@ impl Equations {
                 state.derivatives[0] = 1.0;
                 jacobian[(column - count, column)] = 1.0;
             }
-            self.complete(solver, &rates, &mut direction, &still)?;
+            self.complete(solver, &rates, &mut direction, &mut still)?;
             for (row, change) in self.accelerations.iter().enumerate() {
                 jacobian[(count + row, column)] = *change;
             }
         }
         let mut direction = Direction::zero(solver.mechanism());
-        let loads = self.drift(solver, given, t, &mut direction);
-        self.complete(solver, &rates, &mut direction, &loads)?;
+        let mut loads = self.drift(solver, given, t, &mut direction);
+        self.complete(solver, &rates, &mut direction, &mut loads)?;
         dx_dt[count..2 * count].copy_from_slice(&self.accelerations);
         Ok(())
     }
@@ -237,18 +273,31 @@ impl Equations {
         }
         let later = t + INCREMENT * t.abs().max(1.0);
         let mut loads = self.point.loads.clone();
-        given.loads(later, &mut loads);
+        given.loads(later, &mut loads[..self.inputs()]);
         for (load, now) in loads.iter_mut().zip(&self.point.loads) {
             *load = (*load - now) / (later - t);
         }
         loads
     }
 
+    /// Returns the time at which an event is expected from the accepted point on, if one was found beyond.
+    pub(super) fn expected(&self, now: f64) -> Option<f64> {
+        self.watch.goal(&self.passive, now, &self.accepted.passive)
+    }
+
+    /// Looks for events between the accepted point and the present one.
+    fn judge(&mut self, solver: &Solver) -> Verdict {
+        let times = [self.pose.time, solver.pose().time];
+        let points = [&*self.accepted.passive, &*self.point.passive];
+        self.watch.judge(&self.passive, times, points)
+    }
+
     /// Proves that one motion joins the accepted pose and that at the present point, where the
-    /// mechanism has several drivers or stops: trials on the way may have led round a place at which two
-    /// assembly modes meet. The drivers move on parabolas between the two, which may lead into a stop.
+    /// mechanism has several drivers or open curves: trials on the way may have led round a place at which
+    /// two assembly modes meet. The drivers move on parabolas between the two, which may lead to the end of
+    /// a curve.
     pub(super) fn prove(&mut self, solver: &mut Solver) -> Result<(), Error> {
-        if self.point.drivers.len() < 2 && solver.mechanism().stops.is_empty() {
+        if self.point.drivers.len() < 2 && !solver.has_ends_of_curves() {
             return Ok(());
         }
         solver.save(&mut self.end);
@@ -275,7 +324,7 @@ impl Equations {
                 Curve::held(*to, from.value)
             };
         }
-        let tracked = solver.track(&self.path);
+        let tracked = solver.track_past_stops(&self.path);
         let is_same = tracked.is_ok() && solver.is_near(&self.end);
         solver.restore(&self.end);
         if let Err(Blocked {
@@ -310,7 +359,7 @@ impl Equations {
 
     /// Returns whether the point goes on smoothly from the accepted one.
     pub(super) fn goes_on(&self, mechanism: &Mechanism) -> bool {
-        self.point.joins(&self.accepted, mechanism)
+        self.point.joins(&self.accepted, self.inputs(), mechanism)
     }
 
     /// Returns whether the solver's pose has the values of all drivers at the point.
@@ -341,7 +390,8 @@ impl Equations {
                 given.driver(driver_id, time)
             };
         }
-        given.loads(time, &mut self.point.loads);
+        let inputs = self.inputs();
+        given.loads(time, &mut self.point.loads[..inputs]);
     }
 
     /// Moves the solver straight to the drivers' values and to `parameters` at a time.
@@ -365,7 +415,7 @@ impl Equations {
         }
         // A trial may lie beyond a stop; only what is accepted is part of the motion.
         let tracked = match parameters {
-            Some(_) => solver.track(&self.path),
+            Some(_) => solver.track_past_stops(&self.path),
             None => solver.track_through_stops(&self.path),
         };
         match tracked {
@@ -386,19 +436,28 @@ impl Equations {
         }
     }
 
+    /// Moves the solver to a point of the motion, and evaluates the equations there.
+    pub(super) fn evaluate(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+        x: &[f64],
+    ) -> Result<(), Error> {
+        self.set_drivers(solver, given, time, x);
+        self.go(solver, time, None)?;
+        self.solve(solver)
+    }
+
+    /// Returns L of J = L Lᵀ.
+    pub(super) fn factor(&self) -> &DMatrix<f64> {
+        &self.factor
+    }
+
     /// Writes velocities and accelerations of the freedoms, and the power of all that acts on the
     /// bodies but gravity, at the solver's pose.
     pub(super) fn write(&mut self, solver: &mut Solver, dx: &mut [f64]) -> Result<(), Error> {
-        let Self {
-            point,
-            forces,
-            motion,
-            ..
-        } = self;
-        let velocity = |driver: DriverId| point.drivers[driver.index()].first();
-        solver.write_equations(velocity, &point.loads, forces, motion)?;
-        point.energy = motion.energy;
-        self.solve_accelerations(solver)?;
+        self.solve(solver)?;
         let count = self.freedoms.len();
         for (k, freedom) in self.freedoms.iter().enumerate() {
             let driver = self.point.drivers[freedom.index()];
@@ -407,6 +466,70 @@ impl Equations {
         }
         dx[2 * count] = self.power(solver);
         Ok(())
+    }
+
+    /// Solves the equations of motion at the solver's pose.
+    fn solve(&mut self, solver: &mut Solver) -> Result<(), Error> {
+        let Self {
+            point,
+            forces,
+            motion,
+            passive,
+            ..
+        } = self;
+        let Point {
+            drivers,
+            loads,
+            passive: at,
+            energy,
+        } = point;
+        let inputs = loads.len() - passive.loads();
+        loads[inputs..].fill(0.0);
+        let velocity = |driver: DriverId| drivers[driver.index()].first();
+        solver.write_equations(velocity, loads, forces, motion)?;
+        *energy = motion.energy;
+        passive.begin(solver, motion, at);
+        self.solve_accelerations(solver)?;
+        self.hold();
+        Ok(())
+    }
+
+    /// Finds the passive forces that hold, and completes all of them by the accelerations.
+    fn hold(&mut self) {
+        let Self {
+            passive,
+            point,
+            freedoms,
+            factor,
+            accelerations,
+            motion,
+            ..
+        } = self;
+        let Point {
+            drivers,
+            loads,
+            passive: at,
+            ..
+        } = point;
+        if at.is_empty() {
+            return;
+        }
+        passive.accelerate(at, drivers.iter().map(Jet::second));
+        if passive.holds() {
+            passive.prepare(freedoms, factor);
+            accelerations.fill(0.0);
+            passive.correct(|k| -at[k].coordinate.second(), accelerations);
+            passive.exert(at, motion);
+            ascend(factor, accelerations);
+            for (freedom, change) in freedoms.iter().zip(&*accelerations) {
+                drivers[freedom.index()].derivatives[1] += change;
+            }
+            passive.accelerate_freedoms(at, freedoms, accelerations);
+        }
+        let inputs = loads.len() - passive.loads();
+        for (load, at) in loads[inputs..].iter_mut().zip(&*at) {
+            *load = at.force;
+        }
     }
 
     /// Solves J ü = −bias for the freedoms, by least squares on √M ∂q/∂u: where J is badly conditioned,
@@ -433,11 +556,11 @@ impl Equations {
             }
         }
         self.factorise(solver)?;
-        self.descend();
+        descend(&self.factor, &mut self.accelerations);
         for (place, acceleration) in self.accelerations.iter_mut().enumerate() {
             *acceleration = -self.along[place] - *acceleration;
         }
-        self.ascend();
+        ascend(&self.factor, &mut self.accelerations);
         for (freedom, acceleration) in self.freedoms.iter().zip(&self.accelerations) {
             self.point.drivers[freedom.index()].derivatives[1] = *acceleration;
         }
@@ -480,24 +603,6 @@ impl Equations {
             rest.axpy(-along[place], &done, 1.0);
         }
         Ok(())
-    }
-
-    /// Solves L y = x for the accelerations x, in place.
-    fn descend(&mut self) {
-        let (factor, x) = (&self.factor, &mut self.accelerations);
-        for row in 0..x.len() {
-            let sum: f64 = (0..row).map(|k| factor[(row, k)] * x[k]).sum();
-            x[row] = (x[row] - sum) / factor[(row, row)];
-        }
-    }
-
-    /// Solves Lᵀ x = y for the accelerations, in place.
-    fn ascend(&mut self) {
-        let (factor, x) = (&self.factor, &mut self.accelerations);
-        for row in (0..x.len()).rev() {
-            let sum: f64 = (row + 1..x.len()).map(|k| factor[(k, row)] * x[k]).sum();
-            x[row] = (x[row] - sum) / factor[(row, row)];
-        }
     }
 
     /// Returns the power of the applied forces and of the drivers \[W\].
@@ -559,7 +664,15 @@ impl<G: Given> System for Trials<'_, G> {
         differentiated.map_err(Failure::Trial)
     }
 
+    fn project(&mut self, t: f64, x: &mut [f64]) -> Result<(), Failure<Error>> {
+        let projected = self.equations.project(self.solver, self.given, t, x);
+        projected.map_err(Failure::Trial)
+    }
+
     fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
+        if let Verdict::Cut(time) = self.equations.judge(self.solver) {
+            return Err(Failure::Cut(time));
+        }
         let proved = self.equations.prove(self.solver);
         proved.map_err(|error| match error {
             // The time of a stop is known: no shorter steps have to find it.

@@ -31,6 +31,21 @@ pub enum Error {
         /// Kind and name of each.
         freedoms: Vec<String>,
     },
+    /// Derivatives along a motion end at its first event.
+    #[error(
+        "the derivatives of the motion end at t = {} s, where it meets a stop or friction changes",
+        fixed(*.time, 9)
+    )]
+    NoDerivatives {
+        /// Time of the event \[s\].
+        time: f64,
+    },
+    /// The motion has so many events that it does not go on.
+    #[error("t = {} s: the free motion cannot go on: one event follows the other", fixed(*.time, 9))]
+    TooManyEvents {
+        /// Time of the last one \[s\].
+        time: f64,
+    },
     /// The mechanism comes to no rest.
     #[error("no stable equilibrium was found from the start: downhill motion comes to no rest")]
     NoEquilibrium,

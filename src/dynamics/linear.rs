@@ -61,8 +61,7 @@ impl FreeMotion {
         solution: &mut Solution,
         outputs: &[Output],
     ) -> Result<StateSpace, Error> {
-        let loads = solution.loads.clone();
-        self.solve_accelerations(solver, &mut solution.driver_rates, &loads)?;
+        self.solve_accelerations(solver, solution)?;
         solution.solve(solver)?;
         let mechanism = solver.mechanism().clone();
         let (states, inputs) = (self.states(), inputs(&mechanism));
@@ -116,7 +115,7 @@ impl FreeMotion {
                 direction.drivers[driver.index()].derivatives[order as usize - 1] = 1.0;
             }
         }
-        self.complete(solver, &solution.rates, &mut direction, &loads)?;
+        self.complete(solver, &solution.rates, &mut direction, &mut loads)?;
         let freedoms = self.freedoms().iter();
         let rates = freedoms.flat_map(|id| direction.drivers[id.index()].derivatives);
         let rates = DVector::from_vec(rates.collect());
@@ -155,7 +154,7 @@ impl FreeMotion {
         let count = scales.len();
         for _ in 0..MOST_STEPS {
             self.restart(solver, given, |_| 0.0)?;
-            solution.driver_rates.copy_from_slice(self.drivers());
+            self.tell(solution);
             let space = self.linearize(solver, solution, &[])?;
             let inertia = self.inertia();
             let accelerations = self.accelerations();

@@ -18,6 +18,7 @@
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
 //! | `linear` | its linearisation at a pose; static equilibrium |
 
+mod bounded;
 mod charts;
 mod equations;
 mod error;
@@ -25,12 +26,19 @@ mod given;
 pub mod integrator;
 mod linear;
 mod motion;
+mod passive;
+mod settle;
 mod state;
+mod triangular;
 mod variations;
+mod watch;
 
 pub use charts::keeps_coordinates;
 pub use error::Error;
 pub use given::Given;
 pub use linear::StateSpace;
 pub use motion::FreeMotion;
+pub use passive::{Mode, Passive};
+pub use settle::{Event, EventKind};
 pub use state::FreeState;
+pub use watch::event_indicators;

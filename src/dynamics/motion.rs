@@ -9,16 +9,23 @@ use super::equations::{Equations, Trials};
 use super::error::Error;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
+use super::settle::Event;
 use super::state::FreeState;
+use super::watch::FUNCTIONS;
 use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, Jet};
 
-/// Time to a stop at which the motion is there, as a part of the time or of the way to go: some
-/// roundings.
-const AT_STOP: f64 = 1e-14;
-/// Part of the time to a stop by which a step ends in front of it: the motion between the ends of a
-/// step is known less well than the ends, and a step that ends beyond is in vain.
-const SHORT_OF_STOP: f64 = 1e-4;
+/// Time to the end of a curve at which the motion is there, as a part of the time or of the way to go:
+/// some roundings.
+const AT_END: f64 = 1e-14;
+/// Part of the time to the end of a curve by which a step ends in front of it: the motion between the
+/// ends of a step is known less well than the ends, and a step that ends beyond is in vain.
+const SHORT_OF_END: f64 = 1e-4;
+/// Distance of a held coordinate from its place at which a host's integration is corrected, in gaps that
+/// are rounding: 1e-10 radians or sizes of the mechanism.
+const DRIFT: f64 = 1e4;
+/// Events in one call, far more than a motion has between two rows of a table.
+const MOST_EVENTS: usize = 100_000;
 
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
 ///
@@ -35,6 +42,8 @@ pub struct FreeMotion {
     x: Vec<f64>,
     /// Energy of the bodies without that of springs when the work was zero \[J\].
     energy: f64,
+    /// Events that nobody has read.
+    events: Vec<Event>,
 }
 
 impl FreeMotion {
@@ -87,6 +96,7 @@ impl FreeMotion {
             integrator,
             x,
             energy: 0.0,
+            events: Vec::new(),
         }))
     }
 
@@ -177,6 +187,8 @@ impl FreeMotion {
             coordinates: self.charts.current().to_vec(),
             drivers: accepted.drivers.clone(),
             loads: accepted.loads.clone(),
+            modes: self.equations.passive.state().collect(),
+            passive: accepted.passive.clone(),
             energies: [accepted.energy, self.energy],
         }
     }
@@ -189,11 +201,14 @@ impl FreeMotion {
         state.coordinates.copy_from_slice(self.charts.current());
         state.drivers.copy_from_slice(&accepted.drivers);
         state.loads.copy_from_slice(&accepted.loads);
+        let modes = state.modes.iter_mut().zip(self.equations.passive.state());
+        modes.for_each(|(to, mode)| *to = mode);
+        state.passive.copy_from_slice(&accepted.passive);
         state.energies = [accepted.energy, self.energy];
     }
 
-    /// Makes the solver that of the coordinates of a state, at any pose, and gives the solution its
-    /// forces.
+    /// Makes the solver that of the coordinates of a state, at any pose, gives the solution its forces,
+    /// and takes over the modes of passive forces.
     ///
     /// # Errors
     ///
@@ -204,6 +219,7 @@ impl FreeMotion {
         solution: &mut Solution,
         state: &FreeState,
     ) -> Result<(), Error> {
+        self.equations.passive.resume(&state.modes);
         if self.charts.current() == state.coordinates {
             return Ok(());
         }
@@ -230,8 +246,9 @@ impl FreeMotion {
         Ok(())
     }
 
-    /// Writes the accelerations of the freedoms at the solver's pose into the rates of all drivers,
-    /// for these inputs of forces. The motion itself stays. Allocates nothing.
+    /// Writes the accelerations of the freedoms and the passive forces at the solver's pose into a
+    /// solution that [seeks forces](Solution::seek_forces), for its rates and inputs of forces. The
+    /// motion itself stays. Allocates nothing.
     ///
     /// # Errors
     ///
@@ -239,16 +256,14 @@ impl FreeMotion {
     pub fn solve_accelerations(
         &mut self,
         solver: &mut Solver,
-        drivers: &mut [Jet],
-        loads: &[f64],
+        solution: &mut Solution,
     ) -> Result<(), Error> {
-        let Self { equations, x, .. } = self;
-        equations.solve_at(solver, drivers, loads, x)
+        self.equations.solve_at(solver, solution)
     }
 
     /// Completes a direction by the changes of the freedoms' accelerations, at the pose at which they
     /// were [solved](Self::solve_accelerations) last: their efforts stay zero. `rates` are those of q
-    /// there, `loads` the changes of the inputs of forces.
+    /// there, `loads` the changes of the inputs of forces, which are completed by those of passive forces.
     ///
     /// # Errors
     ///
@@ -258,7 +273,7 @@ impl FreeMotion {
         solver: &mut Solver,
         rates: &Rates,
         direction: &mut Direction,
-        loads: &[f64],
+        loads: &mut [f64],
     ) -> Result<(), Error> {
         self.equations.complete(solver, rates, direction, loads)
     }
@@ -274,7 +289,7 @@ impl FreeMotion {
         solver: &mut Solver,
         solution: &mut Solution,
     ) -> Result<Vec<Direction>, Error> {
-        self.solve_accelerations(solver, &mut solution.driver_rates, &solution.loads)?;
+        self.solve_accelerations(solver, solution)?;
         let mut rates = Rates::new(solver.pose().q.len());
         let x = &self.integrator.state().x;
         self.equations.varied(solver, x, &mut rates)
@@ -298,6 +313,24 @@ impl FreeMotion {
     ///
     /// Accelerations do not exist there.
     pub fn restart(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        velocity: impl Fn(DriverId) -> f64,
+    ) -> Result<(), Error> {
+        self.equations.passive.reset();
+        self.go_on_with(solver, given, velocity)?;
+        // The start is none.
+        self.events.clear();
+        Ok(())
+    }
+
+    /// Goes on from the solver's pose with these velocities of the freedoms, after an event.
+    ///
+    /// # Errors
+    ///
+    /// Accelerations do not exist there.
+    pub fn go_on_with(
         &mut self,
         solver: &mut Solver,
         given: &impl Given,
@@ -348,7 +381,7 @@ impl FreeMotion {
     /// # Errors
     ///
     /// The reason for which it stops; the mechanism is then where the last step of the integrator
-    /// has left it, at a stop to rounding.
+    /// has left it, at the end of a curve to rounding.
     pub fn advance(
         &mut self,
         solver: &mut Solver,
@@ -356,18 +389,19 @@ impl FreeMotion {
         given: &impl Given,
         until: f64,
     ) -> Result<(), Error> {
-        // In front of a stop a step ends at the time at which the stop is expected.
-        let mut goal = until;
+        // In front of the end of a curve a step ends at the time at which the end is expected.
+        let mut end_of_curve = None;
         let start = self.integrator.state().t;
-        let resolution = AT_STOP * start.abs().max((until - start).abs());
+        let resolution = AT_END * start.abs().max((until - start).abs());
+        let events = self.events.len();
         loop {
             let now = self.integrator.state().t;
             if now.to_bits() == until.to_bits() {
                 return Ok(());
             }
-            if now.to_bits() == goal.to_bits() {
-                goal = until;
-            }
+            end_of_curve = end_of_curve.filter(|end| *end > now);
+            let expected = end_of_curve.or_else(|| self.equations.expected(now));
+            let goal = expected.map_or(until, |goal| goal.min(until));
             let mut trials = Trials {
                 solver,
                 equations: &mut self.equations,
@@ -378,6 +412,21 @@ impl FreeMotion {
                 .advance(&mut trials, goal)
                 .map_err(Error::from)
             {
+                Ok(_) if self.equations.watch.event.is_some() => {
+                    if !self.equations.directions.is_empty() {
+                        return Err(Error::NoDerivatives {
+                            time: solver.pose().time,
+                        });
+                    }
+                    self.x.copy_from_slice(&self.integrator.state().x);
+                    self.settle(solver, given)?;
+                    self.go_on(solver, given)?;
+                    if self.events.len() - events > MOST_EVENTS {
+                        return Err(Error::TooManyEvents {
+                            time: solver.pose().time,
+                        });
+                    }
+                }
                 Ok(_) => {
                     self.exchange(solver, solution, given)?;
                 }
@@ -385,12 +434,69 @@ impl FreeMotion {
                     self.equations.return_to_accepted(solver);
                     match error {
                         Error::Stop { time, .. } if time - now > resolution => {
-                            goal = now + (1.0 - SHORT_OF_STOP) * (time - now);
+                            end_of_curve = Some(now + (1.0 - SHORT_OF_END) * (time - now));
                         }
                         _ => return Err(error),
                     }
                 }
             }
+        }
+    }
+
+    /// Decides which stops are touched and which friction sticks, from the values in `x`.
+    fn settle(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
+        let Self {
+            equations,
+            x,
+            events,
+            ..
+        } = self;
+        equations.settle(solver, given, x, events)
+    }
+
+    /// Returns whether stops or friction act on the freedoms.
+    #[must_use]
+    pub fn has_passive_forces(&self) -> bool {
+        !self.equations.passive.is_empty()
+    }
+
+    /// Returns an event indicator at the last point at which accelerations were solved: positive while
+    /// the modes of passive forces last.
+    #[must_use]
+    pub fn event_indicator(&self, index: usize) -> f64 {
+        let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
+        let Equations { passive, point, .. } = &self.equations;
+        let function = passive.function(force, &point.passive[force], side);
+        function.map_or(1.0, |function| function.indicator())
+    }
+
+    /// Returns whether held coordinates are off the places where they are held, at the last point at
+    /// which accelerations were solved.
+    #[must_use]
+    pub fn has_drifted(&self) -> bool {
+        let Equations { passive, point, .. } = &self.equations;
+        let off = |k: usize| {
+            let at = &point.passive[k];
+            let off = at.coordinate.value - passive.anchors[k];
+            off.abs().max(at.coordinate.first().abs()) > DRIFT * at.rounding
+        };
+        (0..point.passive.len()).any(|k| passive.is_held(k) && off(k))
+    }
+
+    /// Returns the events since the last call.
+    pub fn events(&mut self) -> impl Iterator<Item = Event> {
+        self.events.drain(..)
+    }
+
+    /// Gives a solution the rates of all drivers and the passive forces at the accepted point. Those that
+    /// are inputs stay.
+    pub fn tell(&self, solution: &mut Solution) {
+        let accepted = &self.equations.accepted;
+        solution.driver_rates.copy_from_slice(&accepted.drivers);
+        let passive = accepted.loads.iter().rev();
+        let passive = passive.take(self.equations.passive.loads());
+        for (load, passive) in solution.loads.iter_mut().rev().zip(passive) {
+            *load = *passive;
         }
     }
 
@@ -442,6 +548,7 @@ impl FreeMotion {
     /// Begins a smooth part of the motion at the solver's pose, with the values in `x`.
     fn renew(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let count = self.freedoms().len();
+        self.settle(solver, given)?;
         self.x[2 * count] = 0.0;
         self.go_on(solver, given)?;
         self.energy = self.equations.accepted.energy;

@@ -1,6 +1,7 @@
 //! All numbers on which a free motion depends.
 
 use super::integrator::State;
+use super::passive::{Mode, Passive};
 use crate::mechanism::Jet;
 
 /// All numbers on which the motion depends besides the solver's pose and choices: a motion that is
@@ -16,8 +17,12 @@ pub struct FreeState {
     pub coordinates: Vec<usize>,
     /// Value, velocity and acceleration of each driver at the present point.
     pub drivers: Vec<Jet>,
-    /// Sizes of the forces that are inputs there.
+    /// Sizes of the forces that are inputs there, then of passive forces.
     pub loads: Vec<f64>,
+    /// The mode of each passive force, and the value at which its coordinate is held.
+    pub modes: Vec<(Mode, f64)>,
+    /// Each passive force there.
+    pub passive: Vec<Passive>,
     /// Energy of the bodies without that of springs, there and when the work was zero \[J\].
     pub energies: [f64; 2],
 }

@@ -37,7 +37,7 @@ impl Equations {
     ) -> Result<Vec<Direction>, Error> {
         let count = self.freedoms.len();
         solver.solve_rates(|driver| self.point.drivers[driver.index()], rates)?;
-        let still = vec![0.0; self.point.loads.len()];
+        let mut still = vec![0.0; self.point.loads.len()];
         let mut varied = self.directions.clone();
         let changes = x[2 * count + 1..].chunks_exact(2 * count);
         for (direction, changes) in varied.iter_mut().zip(changes) {
@@ -45,7 +45,7 @@ impl Equations {
                 let change = Jet::new(changes[k], [changes[count + k], 0.0]);
                 direction.drivers[freedom.index()] = change;
             }
-            self.complete(solver, rates, direction, &still)?;
+            self.complete(solver, rates, direction, &mut still)?;
         }
         Ok(varied)
     }

@@ -40,7 +40,7 @@ pub use mechanism_model::{
     MechanismModel, MechanismState, Quantity, RESOURCE, TABLE_VERSION, describe, guid, variables,
     write_fmu,
 };
-pub use model::{Groups, Model};
+pub use model::{Groups, Model, StateChange};
 pub use model_description::{
     Capabilities, DependencyKind, Document, Experiment, Member, ModelDescription, Terminal, Unknown,
 };

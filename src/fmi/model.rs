@@ -265,14 +265,13 @@ pub trait Model: Sized {
         false
     }
 
-    /// Exchanges the continuous states at an event at the committed point, in model exchange. Returns
-    /// whether they are others now.
+    /// Changes or exchanges the continuous states at an event at the committed point, in model exchange.
     ///
     /// # Errors
     ///
     /// The states have no derivatives there.
-    fn exchange_states(&mut self) -> Result<bool, Failure> {
-        Ok(false)
+    fn change_states(&mut self) -> Result<StateChange, Failure> {
+        Ok(StateChange::None)
     }
 
     /// Takes a step of `size` \[s\] from the committed point, and commits its end, at time `end`
@@ -348,6 +347,18 @@ pub trait Model: Sized {
         let _ = state;
         Ok(())
     }
+}
+
+/// The effect of an event on the continuous states.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StateChange {
+    /// They stay.
+    #[default]
+    None,
+    /// They have other values.
+    Values,
+    /// They are others, with other values and other nominal values.
+    Exchange,
 }
 
 /// A set of groups of Reals, one bit per group. The values of a group are computed together.

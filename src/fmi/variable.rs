@@ -42,6 +42,8 @@ pub enum Causality {
     LocalState,
     /// Computed; describes the solver rather than the model.
     Local,
+    /// Computed; an event happens where it changes its sign.
+    EventIndicator,
     /// Time.
     Independent,
 }
@@ -140,6 +142,13 @@ pub(super) fn states<Q>(variables: &[Variable<Q>]) -> Box<[usize]> {
     let all = variables.iter().enumerate();
     let states = all.filter(|(_, variable)| variable.causality.is_state());
     states.map(|(place, _)| place).collect()
+}
+
+/// Returns the places of the event indicators.
+pub(super) fn event_indicators<Q>(variables: &[Variable<Q>]) -> Box<[usize]> {
+    let all = variables.iter().enumerate();
+    let indicators = all.filter(|(_, variable)| variable.causality == Causality::EventIndicator);
+    indicators.map(|(place, _)| place).collect()
 }
 
 /// Returns the place of each variable's time derivative.

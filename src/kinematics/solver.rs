@@ -104,6 +104,12 @@ impl Solver {
         self.compiled.plan.is_explicit()
     }
 
+    /// Returns whether points move on open curves.
+    #[must_use]
+    pub fn has_ends_of_curves(&self) -> bool {
+        self.compiled.has_ends_of_curves()
+    }
+
     /// Returns the structure of the equations that are solved; those set aside take no part.
     #[must_use]
     pub fn structure(&self) -> &Structure {
@@ -228,6 +234,17 @@ impl Solver {
         self.tracker.through_stops(|tracker| {
             tracker.track(&mut self.compiled, &mut self.state, path, false)
         })
+    }
+
+    /// Moves the mechanism along `path` as [`track`](Self::track) does, through stops, but not beyond the
+    /// ends of curves: for a motion that stops act on by their forces.
+    ///
+    /// # Errors
+    ///
+    /// As [`track`](Self::track).
+    pub fn track_past_stops(&mut self, path: &Path) -> Result<Progress, Blocked> {
+        self.tracker
+            .past_stops(|tracker| tracker.track(&mut self.compiled, &mut self.state, path, false))
     }
 
     /// Moves the mechanism along `path` as [`track`](Self::track) does, and gives up early where it

@@ -21,7 +21,7 @@ pub struct StopLimit {
 
 impl StopLimit {
     /// Makes a limit of a stop with this value.
-    pub(in crate::kinematics) fn new(stop: &Stop, is_max: bool, value: f64) -> Self {
+    pub(crate) fn new(stop: &Stop, is_max: bool, value: f64) -> Self {
         Self {
             stop: stop.name.clone(),
             subject: stop.subject().to_owned(),

@@ -130,6 +130,7 @@ codes! {
     DUPLICATE_OUTPUT = "duplicate-output",
     FLOATING_BODY = "floating-body",
     FORCE_SHAPE = "force-shape",
+    FRICTION_COORDINATE = "friction-coordinate",
     ILLEGAL_NAME = "illegal-name",
     ILLEGAL_TEXT = "illegal-text",
     ILLEGAL_VALUE = "illegal-value",

@@ -1,5 +1,6 @@
 //! Forces on a mechanism, besides gravity.
 
+use super::friction::FrictionLaw;
 use super::{Coordinate, Expression, MarkerId, Mechanism, Number, ParameterId, Unit, Variable};
 
 /// Force on a mechanism.
@@ -23,6 +24,13 @@ pub enum Load {
         /// Size f, `None` for an FMI input.
         law: Option<ForceLaw>,
     },
+    /// A generalized force along a coordinate that follows from the motion.
+    Passive {
+        /// Coordinate c.
+        coordinate: Coordinate,
+        /// Its cause.
+        cause: PassiveCause,
+    },
     /// A force at a marker's point and a torque on its body.
     Marker {
         /// Marker at whose point the force acts.
@@ -34,8 +42,18 @@ pub enum Load {
     },
 }
 
-/// Size of a generalized force: f = value − stiffness (c − free) − damping ċ.
+/// Cause of a force that follows from the motion.
 #[derive(Clone, Debug)]
+pub enum PassiveCause {
+    /// A rigid stop, by its index: it pushes where something touches it.
+    Stop(usize),
+    /// Friction: it acts against the rate of the coordinate, and holds it at rest.
+    Friction(FrictionLaw),
+}
+
+/// Size of a generalized force: f = value − stiffness (c − free) − damping ċ, and those of an elastic
+/// stop and of friction.
+#[derive(Clone, Debug, Default)]
 pub struct ForceLaw {
     /// Part that is a function of time, of c and of its rate \[N or N m\].
     pub value: Option<Expression>,
@@ -43,6 +61,32 @@ pub struct ForceLaw {
     pub spring: Option<Spring>,
     /// Coefficient of a damper \[N s/m or N m s/rad\].
     pub damping: Option<Expression>,
+    /// Elastic stop.
+    pub stop: Option<ElasticStop>,
+    /// Friction that never sticks.
+    pub friction: Option<RegularisedFriction>,
+}
+
+/// A stop that yields: beyond its limits a spring and a damper push the coordinate back, and never
+/// pull.
+#[derive(Clone, Debug)]
+pub struct ElasticStop {
+    /// Least and largest value at which it does not push \[m or rad\].
+    pub limits: [Option<Expression>; 2],
+    /// Stiffness \[N/m or N m/rad\].
+    pub stiffness: Expression,
+    /// Coefficient of the damper \[N s/m or N m s/rad\].
+    pub damping: Option<Expression>,
+}
+
+/// Friction that falls to zero at low rates and never sticks: its dry part is multiplied by
+/// tanh(ċ / speed).
+#[derive(Clone, Debug)]
+pub struct RegularisedFriction {
+    /// F.
+    pub law: FrictionLaw,
+    /// Rate from which most of the force acts \[m/s or rad/s\].
+    pub speed: Expression,
 }
 
 /// Linear spring.
@@ -108,7 +152,7 @@ impl Force {
     fn describe(&self, mechanism: &Mechanism) -> String {
         match &self.load {
             _ if !self.description.is_empty() => self.description.clone(),
-            Load::Coordinate { coordinate, .. } => {
+            Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
                 let word = coordinate.kind.effort_word();
                 format!("{word} along {}", coordinate.describe(mechanism))
             }
@@ -156,13 +200,87 @@ impl ForceLaw {
         if let Some(damping) = &self.damping {
             force -= damping.evaluate(parameter, N::constant(0.0)) * velocity;
         }
+        if let Some(stop) = &self.stop {
+            force += stop.force(parameter, [position, velocity]);
+        }
+        if let Some(friction) = &self.friction {
+            force -= friction.against(parameter, velocity);
+        }
         force
     }
 
     /// Returns its expressions.
     pub fn expressions(&self) -> impl Iterator<Item = &Expression> {
         let spring = self.spring.iter().flat_map(|s| [&s.stiffness, &s.free]);
-        self.value.iter().chain(spring).chain(&self.damping)
+        let stop = self.stop.iter().flat_map(|stop| {
+            let limits = stop.limits.iter().flatten();
+            limits.chain([&stop.stiffness]).chain(&stop.damping)
+        });
+        let friction = self.friction.iter();
+        let friction = friction.flat_map(|f| f.law.expressions().chain([&f.speed]));
+        let own = self.value.iter().chain(spring).chain(&self.damping);
+        own.chain(stop).chain(friction)
+    }
+}
+
+impl ElasticStop {
+    /// Returns how far a value is beyond a limit, and 1 for the least or −1 for the largest one; `None`
+    /// between the limits.
+    fn beyond<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        position: N,
+    ) -> Option<(N, f64)> {
+        let [least, most] = self.limits.each_ref().map(|limit| {
+            let limit = limit.as_ref()?;
+            Some(limit.evaluate(parameter, N::constant(0.0)))
+        });
+        let below = least.map(|least| (least - position, 1.0));
+        let above = most.map(|most| (position - most, -1.0));
+        let mut sides = [below, above].into_iter().flatten();
+        sides.find(|(beyond, _)| beyond.real() > 0.0)
+    }
+
+    /// Returns the force along the coordinate: towards the limits, and never away from them.
+    fn force<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, coordinate: [N; 2]) -> N {
+        let zero = N::constant(0.0);
+        let push = self.push(parameter, coordinate);
+        push.filter(|(push, _)| push.real() > 0.0)
+            .map_or(zero, |(push, sign)| push * sign)
+    }
+
+    /// Returns the push of spring and damper on a coordinate beyond a limit, negative where it would
+    /// pull, and the sign of its direction; `None` between the limits.
+    pub fn push<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        [position, velocity]: [N; 2],
+    ) -> Option<(N, f64)> {
+        let zero = N::constant(0.0);
+        let (beyond, sign) = self.beyond(parameter, position)?;
+        let mut push = self.stiffness.evaluate(parameter, zero) * beyond;
+        if let Some(damping) = &self.damping {
+            push -= damping.evaluate(parameter, zero) * velocity * sign;
+        }
+        Some((push, sign))
+    }
+
+    /// Returns the energy of its spring.
+    pub fn energy<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, position: N) -> N {
+        let zero = N::constant(0.0);
+        let beyond = self.beyond(parameter, position);
+        beyond.map_or(zero, |(beyond, _)| {
+            self.stiffness.evaluate(parameter, zero) * beyond.square() * 0.5
+        })
+    }
+}
+
+impl RegularisedFriction {
+    /// Returns the force against a rate of the coordinate.
+    fn against<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N) -> N {
+        let speed = self.speed.evaluate(parameter, N::constant(0.0));
+        let dry = self.law.dry(parameter, rate) * (rate / speed).tanh();
+        dry + self.law.viscous(parameter) * rate
     }
 }
 
@@ -177,10 +295,10 @@ impl Load {
             Self::Coordinate { law, .. } => {
                 *law = Some(ForceLaw {
                     value: Some(size),
-                    spring: None,
-                    damping: None,
+                    ..ForceLaw::default()
                 });
             }
+            Self::Passive { .. } => unreachable!("it is no input"),
             Self::Marker { law, .. } => {
                 let zero = || Expression::constant(0.0);
                 let law = law.get_or_insert_with(|| [zero(), zero(), zero()]);
@@ -189,20 +307,38 @@ impl Load {
         }
     }
 
+    /// Returns the size of a force along a coordinate, if the file gives one.
+    #[must_use]
+    pub fn law(&self) -> Option<&ForceLaw> {
+        match self {
+            Self::Coordinate { law, .. } => law.as_ref(),
+            Self::Passive { .. } | Self::Marker { .. } => None,
+        }
+    }
+
     /// Returns whether its size is an FMI input.
     #[must_use]
     pub fn is_input(&self) -> bool {
         match self {
             Self::Coordinate { law, .. } => law.is_none(),
+            Self::Passive { .. } => false,
             Self::Marker { law, .. } => law.is_none(),
         }
+    }
+
+    /// Returns the number of its components.
+    #[must_use]
+    pub fn components(&self) -> usize {
+        self.variables().len()
     }
 
     /// Returns the last parts of the names of its FMI variables, with their units.
     #[must_use]
     fn variables(&self) -> Vec<(&'static str, Unit)> {
         match self {
-            Self::Coordinate { coordinate, .. } => vec![("effort", coordinate.kind.effort_unit())],
+            Self::Coordinate { coordinate, .. } | Self::Passive { coordinate, .. } => {
+                vec![("effort", coordinate.kind.effort_unit())]
+            }
             Self::Marker { .. } => {
                 let units = [Unit::NEWTON, Unit::NEWTON, Unit::NEWTON_METRE];
                 Self::COMPONENTS.into_iter().zip(units).collect()
@@ -215,6 +351,10 @@ impl Load {
     pub fn expressions(&self) -> Vec<&Expression> {
         match self {
             Self::Coordinate { law, .. } => law.iter().flat_map(ForceLaw::expressions).collect(),
+            Self::Passive { cause, .. } => match cause {
+                PassiveCause::Stop(_) => Vec::new(),
+                PassiveCause::Friction(law) => law.expressions().collect(),
+            },
             Self::Marker { law, .. } => law.iter().flatten().collect(),
         }
     }

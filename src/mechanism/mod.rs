@@ -32,6 +32,7 @@ mod encoding;
 mod expression;
 mod force;
 mod force_quantity;
+mod friction;
 mod id;
 mod lookup;
 mod motion;
@@ -62,8 +63,11 @@ pub(crate) use expression::Values;
 #[cfg(feature = "page")]
 pub(crate) use expression::constant;
 pub use expression::{Expression, ExpressionError, LinearForm, Variable};
-pub use force::{Force, ForceComponent, ForceLaw, Load, Spring};
+pub use force::{
+    ElasticStop, Force, ForceComponent, ForceLaw, Load, PassiveCause, RegularisedFriction, Spring,
+};
 pub use force_quantity::ForceQuantity;
+pub use friction::FrictionLaw;
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
@@ -84,7 +88,7 @@ pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
-pub use stop::Stop;
+pub use stop::{Stop, StopContact};
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};

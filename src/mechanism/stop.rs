@@ -1,6 +1,6 @@
 //! Stops: where a coordinate may not go.
 
-use super::{Coordinate, Expression};
+use super::{Coordinate, ElasticStop, Expression, Force, ForceLaw, Load, PassiveCause};
 
 /// Limits that a coordinate does not pass.
 #[derive(Clone, Debug)]
@@ -18,9 +18,46 @@ pub struct Stop {
     pub min: Option<Expression>,
     /// Largest value \[m or rad\], above the least one.
     pub max: Option<Expression>,
+    /// Behaviour at the limits.
+    pub contact: StopContact,
+}
+
+/// Behaviour at a limit of a stop.
+#[derive(Clone, Debug)]
+pub enum StopContact {
+    /// The coordinate does not go beyond. Where it is driven the motion ends; where forces move it,
+    /// it bounces with this part of its velocity, from 0 to 1.
+    Rigid {
+        /// Coefficient of restitution, `None` for zero.
+        restitution: Option<Expression>,
+    },
+    /// The coordinate goes beyond against a spring and a damper.
+    Elastic {
+        /// Stiffness \[N/m or N m/rad\].
+        stiffness: Expression,
+        /// Coefficient of the damper \[N s/m or N m s/rad\].
+        damping: Option<Expression>,
+    },
 }
 
 impl Stop {
+    /// Returns whether the coordinate does not go beyond its limits.
+    #[must_use]
+    pub fn is_rigid(&self) -> bool {
+        matches!(self.contact, StopContact::Rigid { .. })
+    }
+
+    /// Returns the coefficient of restitution, zero for an elastic stop.
+    #[must_use]
+    pub fn restitution(&self, parameters: &[f64]) -> f64 {
+        match &self.contact {
+            StopContact::Rigid {
+                restitution: Some(restitution),
+            } => restitution.value(parameters),
+            _ => 0.0,
+        }
+    }
+
     /// Returns least and largest value \[m or rad\] for these parameters, infinite without a limit.
     /// Allocates nothing.
     #[must_use]
@@ -40,5 +77,37 @@ impl Stop {
         self.of
             .as_deref()
             .unwrap_or_else(|| self.coordinate.kind.word())
+    }
+
+    /// Returns the force that the stop, which has this index, exerts: an elastic one by its law, a
+    /// rigid one as the motion demands.
+    pub(super) fn force(&self, index: usize) -> Force {
+        let coordinate = self.coordinate;
+        let load = match &self.contact {
+            StopContact::Rigid { .. } => Load::Passive {
+                coordinate,
+                cause: PassiveCause::Stop(index),
+            },
+            StopContact::Elastic { stiffness, damping } => {
+                let stop = ElasticStop {
+                    limits: [self.min.clone(), self.max.clone()],
+                    stiffness: stiffness.clone(),
+                    damping: damping.clone(),
+                };
+                let stop = Some(stop);
+                Load::Coordinate {
+                    coordinate,
+                    law: Some(ForceLaw {
+                        stop,
+                        ..ForceLaw::default()
+                    }),
+                }
+            }
+        };
+        Force {
+            name: self.name.clone(),
+            description: self.description.clone(),
+            load,
+        }
     }
 }

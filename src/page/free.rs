@@ -125,7 +125,7 @@ impl Session {
                 return Ok(());
             };
             let flown = freedoms.advance(solver, solution, time);
-            (solution.driver_rates).copy_from_slice(freedoms.motion.drivers());
+            freedoms.motion.tell(solution);
             flown
         });
         match flown {
@@ -155,7 +155,7 @@ impl Session {
             return Ok(());
         };
         let begins = freedoms.release(solver, solution)?;
-        (solution.driver_rates).copy_from_slice(freedoms.motion.drivers());
+        freedoms.motion.tell(solution);
         if begins {
             self.start = self.here();
         }

@@ -146,7 +146,7 @@ impl Moment {
             "it was there before"
         );
         freedoms.is_released = true;
-        solution.driver_rates.copy_from_slice(motion.drivers());
+        motion.tell(solution);
     }
 }
 
@@ -181,6 +181,6 @@ impl Given for Inputs {
     }
 
     fn loads(&self, _: f64, loads: &mut [f64]) {
-        loads.copy_from_slice(&self.loads);
+        loads.copy_from_slice(&self.loads[..loads.len()]);
     }
 }

@@ -33,6 +33,8 @@ pub(super) struct Spring {
     pub(super) hand: [f64; 2],
     /// Stiffness \[N/m\].
     pub(super) stiffness: f64,
+    /// The first input of the load.
+    first_load: usize,
     /// The mechanism without the spring, which waits.
     pub(super) other: Carrier,
 }
@@ -62,6 +64,7 @@ impl Spring {
             grip,
             hand,
             stiffness,
+            first_load: mechanism.force_inputs().len(),
             other: Carrier {
                 freedoms: freedoms.ok_or("nothing moves by forces")?,
                 solution,
@@ -72,8 +75,7 @@ impl Spring {
 
     /// Writes the load that moves the spring's free end to the hand into the last inputs.
     pub(super) fn load(&self, loads: &mut [f64]) {
-        let first = loads.len() - Load::COMPONENTS.len();
-        for (load, place) in loads[first..].iter_mut().zip(self.hand) {
+        for (load, place) in loads[self.first_load..].iter_mut().zip(self.hand) {
             *load = self.stiffness * place;
         }
     }
@@ -130,8 +132,8 @@ fn hung(
         },
         law: Some(ForceLaw {
             value: Some(Expression::multiple(-stiffness, Variable::Position)),
-            spring: None,
             damping: Some(Expression::constant(damping)),
+            ..ForceLaw::default()
         }),
     };
     let hand = Load::Marker {

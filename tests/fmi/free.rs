@@ -3,8 +3,8 @@
 
 use biela::dynamics::integrator::{ErrorControl, Failure, Integrator, Method, System};
 use biela::fmi::{
-    Call, Causality, Error, Interface, MechanismModel, Quantity, StepProgress, Variable, Version,
-    value_reference,
+    Call, Causality, Error, Interface, MechanismModel, Quantity, StateChange, StepProgress,
+    Variable, Version, value_reference,
 };
 use biela::mechanism::Mechanism;
 use std::sync::Arc;
@@ -351,7 +351,8 @@ fn host(instance: &mut Instance, until: f64) -> bool {
             instance.enter_event_mode().expect("legal");
             let event = instance.new_discrete_states().expect("it goes on");
             instance.enter_continuous_time_mode().expect("legal");
-            assert!(event.states_changed && !event.must_end);
+            assert_eq!(event.states, StateChange::Exchange);
+            assert!(!event.must_end);
             return true;
         }
     }

@@ -381,6 +381,7 @@ fn it_is_described_and_packed() {
         outputs: vec![unknown.clone()],
         derivatives: Vec::new(),
         initial_unknowns: vec![unknown],
+        event_indicators: Vec::new(),
         terminals: Vec::new(),
     };
     let mut archive = Cursor::new(Vec::new());

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use biela::fmi::{
     Category, CoSimulation, Error, Failure, Instance as FmiInstance, Interface, MechanismModel,
-    StepProgress, Version,
+    StateChange, StepProgress, Version,
 };
 use biela::mechanism::Mechanism;
 
@@ -190,33 +190,96 @@ fn a_step_returns_early_at_a_stop() {
     assert!((x - 0.12).abs() < 1e-13, "{x}");
 }
 
-/// The host of model exchange integrates through the stop; where it accepts a point beyond, the
-/// simulation ends.
+/// A nut that moves freely at 1 m/s towards the wall, with friction of 0.5 N.
+fn free() -> Arc<Mechanism> {
+    nut(r#"
+[freedoms]
+feed = { coordinate = "x", markers = ["ground.S", "nut.N"], start = 0, velocity = 1 }
+[friction]
+rail = { of = "feed", force = 0.5 }
+"#)
+}
+
+/// The event indicators of the wall (least value, largest value) and of friction.
+fn indicators(instance: &mut Instance) -> [f64; 4] {
+    let all: Vec<f64> = instance.event_indicators(4).expect("known").collect();
+    all.try_into().expect("four")
+}
+
 #[test]
-fn model_exchange_ends_behind_a_stop() {
-    let free = "[freedoms]\nfeed = { coordinate = \"x\", markers = [\"ground.S\", \"nut.N\"], start = 0, \
-                velocity = 1 }";
-    let heard = Heard::default();
-    let model = MechanismModel::new(nut(free), Interface::ModelExchange).expect("it assembles");
-    let mut instance = started(FmiInstance::new(model, Box::new(heard.clone()), true));
-    for (time, place, ends) in [(0.1, 0.1, false), (0.2, 0.2, true)] {
-        instance.set_time(time).expect("legal");
-        instance
-            .set_continuous_states(&[place, 1.0])
-            .expect("legal");
-        // A trial point beyond has derivatives.
-        let derivatives: Vec<f64> = (instance.derivatives_of_states(2).expect("known")).collect();
-        assert_eq!(derivatives, [1.0, 0.0]);
-        let completed = instance.completed_integrator_step().expect("legal");
-        assert_eq!(completed.must_end, ends);
+fn event_indicators_tell_stops_and_friction_in_model_exchange() {
+    for version in [Version::Fmi2] {
+        let heard = Heard::default();
+        let model = MechanismModel::new(free(), Interface::ModelExchange).expect("it assembles");
+        let instance = FmiInstance::of_version(version, model, Box::new(heard.clone()), true);
+        let mut instance = started(instance);
+        let go = |instance: &mut Instance, time: f64, states: [f64; 2]| {
+            instance.set_time(time).expect("legal");
+            instance.set_continuous_states(&states).expect("legal");
+            let derivatives = instance.derivatives_of_states(2).expect("known");
+            derivatives.last().expect("two")
+        };
+        let event = |instance: &mut Instance| {
+            let completed = instance.completed_integrator_step().expect("legal");
+            assert!(!completed.must_end);
+            instance.enter_event_mode().expect("legal");
+            let event = instance.new_discrete_states().expect("it goes on");
+            instance.enter_continuous_time_mode().expect("legal");
+            assert!(!event.must_end);
+            let states: Vec<f64> = instance.continuous_states(2).expect("known").collect();
+            (event.states, states)
+        };
+        // Sliding: 0.5 N on 1 kg.
+        assert_eq!(go(&mut instance, 0.1, [0.1, 0.9]), -0.5);
+        let [_, wall, sliding, _] = indicators(&mut instance);
+        assert!((wall - 0.02).abs() < 1e-12 && (sliding - 0.9).abs() < 1e-12);
+        // Beyond the wall, as far as a host finds its instant: the nut is stopped, and rests.
+        go(&mut instance, 0.12, [0.12 + 1e-12, 0.8]);
+        let [_, wall, ..] = indicators(&mut instance);
+        assert!(wall < 0.0, "{wall}");
+        let (change, states) = event(&mut instance);
+        assert_eq!(change, StateChange::Values);
+        assert!(
+            (states[0] - 0.12).abs() < 1e-15 && states[1] == 0.0,
+            "{states:?}"
+        );
+        assert_eq!(go(&mut instance, 0.2, [0.12, 0.0]), 0.0);
+        // Nothing changes at a further event.
+        let (change, again) = event(&mut instance);
+        assert_eq!((change, again), (StateChange::None, vec![0.12, 0.0]));
+        assert!(heard.take(Category::Error).is_empty());
     }
-    let [message] = &heard.take(Category::Error)[..] else {
-        panic!("one message")
+}
+
+#[test]
+fn the_state_of_a_contact_is_saved() {
+    let heard = Heard::default();
+    let start = |interface| {
+        let model = MechanismModel::new(free(), interface).expect("it assembles");
+        started(FmiInstance::new(model, Box::new(heard.clone()), true))
     };
-    assert!(
-        message.starts_with(
-            "t = 0.2 s: the simulation must end: stop `wall` reached: feed = 0.120000000 m"
-        ),
-        "{message}"
-    );
+    let mut instance = start(Interface::CoSimulation);
+    // It meets the wall after 0.124 s and rests there; saved before and after.
+    for (time, at_rest) in [(0.1, false), (0.2, true)] {
+        instance.do_step(time - 0.1, 0.1).expect("it moves");
+        let [velocity] = get(&mut instance, ["feed.velocity"]);
+        assert_eq!(velocity == 0.0, at_rest);
+        let saved = instance.fmu_state().expect("legal");
+        let bytes = instance.serialize_fmu_state(&saved).expect("legal");
+        instance.do_step(time, 0.1).expect("it goes on");
+        let first = get(
+            &mut instance,
+            ["feed.position", "feed.velocity", "wall.effort"],
+        );
+        let mut other = start(Interface::CoSimulation);
+        let read = other.deserialize_fmu_state(&bytes).expect("its own");
+        other.set_fmu_state(&read).expect("the same mechanism");
+        other.do_step(time, 0.1).expect("it goes on");
+        let second = get(
+            &mut other,
+            ["feed.position", "feed.velocity", "wall.effort"],
+        );
+        assert_eq!(first, second);
+        instance.set_fmu_state(&saved).expect("its own");
+    }
 }

@@ -197,6 +197,7 @@ impl<'a> Composer<'a> {
     fn force(&mut self, force: &Force) {
         let (coordinate, law) = match &force.load {
             Load::Coordinate { coordinate, law } => (coordinate, law.as_ref()),
+            Load::Passive { .. } => return,
             Load::Marker { marker, axes, law } => {
                 let at = self.anchor(*marker);
                 let axes = axes.map_or(Anchor::origin(None), |axes| self.anchor(axes));

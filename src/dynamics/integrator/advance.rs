@@ -193,6 +193,7 @@ impl Integrator {
         self.prepare(system, gap)
             .map_err(|refusal| refusal.at(start))?;
         let mut trials = 0;
+        let (mut until, mut gap) = (until, gap);
         loop {
             let length = fitted(&self.state, gap.abs());
             let end = if length < gap.abs() {
@@ -204,6 +205,10 @@ impl Integrator {
                 Ok(error) => {
                     self.commit(end, length, error, trials > 0);
                     return Ok(Step { start, end });
+                }
+                Err(Refusal::Cut(time)) => {
+                    (until, gap) = (time, time - start);
+                    continue;
                 }
                 Err(refusal) => refusal,
             };
@@ -338,6 +343,7 @@ impl Integrator {
         if error > 1.0 {
             return Err(Refusal::Retry(Reason::Inaccurate(error)));
         }
+        system.project(end, x)?;
         evaluate(system, end, x, dx, statistics)?;
         system.accept(end, x, dx)?;
         Ok(error)

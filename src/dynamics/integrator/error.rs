@@ -9,6 +9,8 @@ pub enum Failure<C> {
     Trial(C),
     /// No shorter step helps: the integrator returns [`Error::Stopped`].
     Hard(C),
+    /// The step must end at this time or before, later than its start: an event lies there \[s\].
+    Cut(f64),
 }
 
 /// Reason for the refusal of a trial step.
@@ -109,6 +111,8 @@ pub(super) enum Refusal<C: Debug + Display> {
     Retry(Reason<C>),
     /// No step can succeed.
     Stop(C),
+    /// The step must end at this time or before \[s\].
+    Cut(f64),
 }
 
 impl<C: Debug + Display> Refusal<C> {
@@ -117,6 +121,7 @@ impl<C: Debug + Display> Refusal<C> {
         match self {
             Self::Retry(reason) => Error::NoDerivatives { t, reason },
             Self::Stop(cause) => Error::Stopped { t, cause },
+            Self::Cut(_) => unreachable!("only steps are cut"),
         }
     }
 }
@@ -126,6 +131,7 @@ impl<C: Debug + Display> From<Failure<C>> for Refusal<C> {
         match failure {
             Failure::Trial(cause) => Self::Retry(Reason::Failed(cause)),
             Failure::Hard(cause) => Self::Stop(cause),
+            Failure::Cut(time) => Self::Cut(time),
         }
     }
 }

@@ -73,6 +73,7 @@ pub(super) fn shorten<C: Debug + Display>(
     let reason = match refusal {
         Refusal::Stop(cause) => return Err(Error::Stopped { t: state.t, cause }),
         Refusal::Retry(reason) => reason,
+        Refusal::Cut(_) => return Ok(()),
     };
     if let Reason::Inaccurate(error) = reason {
         state.statistics.rejected += 1;

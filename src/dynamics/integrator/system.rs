@@ -56,12 +56,24 @@ pub trait System {
         Ok(())
     }
 
+    /// Moves the end of a trial step onto what the motion obeys exactly, before f is evaluated there.
+    /// The default leaves it.
+    ///
+    /// # Errors
+    ///
+    /// As for [`derivatives`](Self::derivatives).
+    fn project(&mut self, t: f64, x: &mut [f64]) -> Result<(), Failure<Self::Cause>> {
+        let _ = (t, x);
+        Ok(())
+    }
+
     /// Takes note that the step to this point is accepted. The default does nothing.
     ///
     /// # Errors
     ///
     /// [`Failure::Trial`] refuses the step: the integrator tries a shorter one from the last
-    /// accepted point, which the system must still be at. [`Failure::Hard`] ends the integration.
+    /// accepted point, which the system must still be at. [`Failure::Hard`] ends the integration,
+    /// [`Failure::Cut`] has the step end earlier.
     fn accept(&mut self, t: f64, x: &[f64], dx: &[f64]) -> Result<(), Failure<Self::Cause>> {
         let _ = (t, x, dx);
         Ok(())

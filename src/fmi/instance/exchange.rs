@@ -1,7 +1,7 @@
-//! Model exchange for models without event indicators.
+//! Model exchange.
 
 use super::{Category, Error, Failure, Instance, Status, check_finite};
-use crate::fmi::model::Model;
+use crate::fmi::model::{Model, StateChange};
 use crate::fmi::state::{Call, Interface, State, Version};
 use crate::mechanism::show_time;
 
@@ -10,8 +10,8 @@ use crate::mechanism::show_time;
 pub struct EventResult {
     /// The simulation must end, since the point does not exist.
     pub must_end: bool,
-    /// The continuous states are others, with other nominal values.
-    pub states_changed: bool,
+    /// The effect on the continuous states.
+    pub states: StateChange,
 }
 
 /// A model's answer at the end of an integrator's step.
@@ -42,8 +42,8 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2NewDiscreteStates`, `fmi3UpdateDiscreteStates`: the model has none. Commits values that
-    /// jump between two steps of co-simulation; exchanges the continuous states in model exchange.
+    /// `fmi2NewDiscreteStates`, `fmi3UpdateDiscreteStates`: none needs another update. Commits values that
+    /// jump between two steps of co-simulation; lets the continuous states jump in model exchange.
     ///
     /// # Errors
     ///
@@ -55,16 +55,12 @@ impl<M: Model> Instance<M> {
             self.commit(Call::NewDiscreteStates)?;
         }
         let must_end = self.course.terminated;
-        let exchanged = match is_hosted && !must_end {
-            true => self.model.exchange_states(),
-            false => Ok(false),
+        let changed = match is_hosted && !must_end {
+            true => self.model.change_states(),
+            false => Ok(StateChange::None),
         };
-        let states_changed =
-            exchanged.map_err(|failure| self.failed(Call::NewDiscreteStates, failure))?;
-        Ok(EventResult {
-            must_end,
-            states_changed,
-        })
+        let states = changed.map_err(|failure| self.failed(Call::NewDiscreteStates, failure))?;
+        Ok(EventResult { must_end, states })
     }
 
     /// `fmi2EnterContinuousTimeMode`.
@@ -140,14 +136,30 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Answers a function of event indicators, for `count` values.
+    /// `fmi3GetNumberOfEventIndicators`.
     ///
     /// # Errors
     ///
-    /// `count` is not zero: the model has none.
-    pub fn event_indicators(&self, count: usize) -> Result<(), Error> {
+    /// The state forbids the call.
+    pub fn number_of_event_indicators(&self) -> Result<usize, Error> {
+        self.allow(Call::GetNumberOfEventIndicators)?;
+        Ok(self.event_indicators.len())
+    }
+
+    /// `fmi2GetEventIndicators`, `fmi3GetEventIndicators`: returns the values of all event indicators,
+    /// for a host that asks for `count`.
+    ///
+    /// # Errors
+    ///
+    /// There is another number of them; or they have no value.
+    pub fn event_indicators(&mut self, count: usize) -> Result<impl Iterator<Item = f64>, Error> {
         self.allow(Call::GetEventIndicators)?;
-        check_count(count, 0)
+        check_count(count, self.event_indicators.len())?;
+        let all = self.event_indicators.iter();
+        let groups = all.fold(0, |groups, place| groups | self.groups[*place]);
+        self.refresh(Call::GetEventIndicators, groups)?;
+        let reals = self.model.reals();
+        Ok(self.event_indicators.iter().map(|place| reals[*place]))
     }
 
     /// `fmi3GetNumberOfContinuousStates`.

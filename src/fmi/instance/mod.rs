@@ -37,7 +37,7 @@ use super::log::{Category, Logger, Sink};
 use super::model::{Groups, Model};
 use super::state::{Allowed, Call, Interface, Phase, State, Version, allowed, is_allowed};
 use super::status::Status;
-use super::variable::{Variable, derivatives, states};
+use super::variable::{Variable, derivatives, event_indicators, states};
 use fmu_state::Course;
 use step_mode::PendingStep;
 use values::{Request, groups_of, is_continuous_input};
@@ -61,6 +61,8 @@ pub struct Instance<M: Model> {
     continuous_inputs: Box<[bool]>,
     /// The places of the continuous states.
     states: Box<[usize]>,
+    /// The places of the event indicators.
+    event_indicators: Box<[usize]>,
     version: Version,
     interface: Interface,
     /// Calls that each state allows.
@@ -123,6 +125,7 @@ impl<M: Model> Instance<M> {
             quantities: variables.iter().map(|v| v.quantity).collect(),
             groups: variables.iter().map(groups).collect(),
             states: states(variables),
+            event_indicators: event_indicators(variables),
             continuous_inputs: variables.iter().map(is_continuous_input).collect(),
             guid: model.guid().into(),
             version,

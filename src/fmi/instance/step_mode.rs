@@ -338,7 +338,11 @@ impl<M: Model> Instance<M> {
             }
             State::StepMode if self.course.set_since_step => {
                 let is_computed = |c: Causality| {
-                    c.is_output() || matches!(c, Causality::Local | Causality::LocalState)
+                    c.is_output()
+                        || matches!(
+                            c,
+                            Causality::Local | Causality::LocalState | Causality::EventIndicator
+                        )
                 };
                 self.refuse(value_references, is_computed, |name| Error::NotStepped {
                     name,

@@ -354,6 +354,7 @@ impl<M: Model> Instance<M> {
             Causality::State => "a state, and initialization has ended",
             Causality::LocalState => "a state, which initialization computes",
             Causality::Local => "about the solver",
+            Causality::EventIndicator => "an event indicator",
             Causality::Independent => "the time",
         };
         Err(Error::NotSettable {

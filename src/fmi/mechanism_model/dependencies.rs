@@ -123,6 +123,7 @@ impl<'a> DependencyTable<'a> {
             }
             Quantity::Output(OutputSource::Force(force)) => Some(match force {
                 ForceQuantity::Inertia(_) | ForceQuantity::PotentialEnergy => Order::Position,
+                ForceQuantity::Applied(force, _) if self.is_passive(force) => Order::Acceleration,
                 ForceQuantity::Bias(_)
                 | ForceQuantity::Applied(..)
                 | ForceQuantity::KineticEnergy => Order::Velocity,
@@ -132,11 +133,18 @@ impl<'a> DependencyTable<'a> {
                 | ForceQuantity::Share(..)
                 | ForceQuantity::Held(_) => Order::Acceleration,
             }),
+            Quantity::EventIndicator(_) => Some(Order::Acceleration),
             Quantity::Parameter(id) if self.mechanism.parameters[id.index()].derived => {
                 Some(Order::Position)
             }
             _ => None,
         }
+    }
+
+    /// Returns whether a force follows from all others and the masses.
+    fn is_passive(&self, force: usize) -> bool {
+        let is_passive = matches!(self.mechanism.forces[force].load, Load::Passive { .. });
+        is_passive && self.mechanism.has_freedoms()
     }
 
     /// Returns the dependencies on those of the quantities that are variables.
@@ -225,7 +233,9 @@ impl<'a> DependencyTable<'a> {
         let forces = &self.mechanism.forces;
         let uses_time = |load: &Load| load.expressions().iter().any(|e| e.uses(Of::Time));
         let (count, depends_on_time) = match force {
-            ForceQuantity::Applied(force, _) if !forces[force].load.is_input() => {
+            ForceQuantity::Applied(force, _)
+                if !forces[force].load.is_input() && !self.is_passive(force) =>
+            {
                 (0, uses_time(&forces[force].load))
             }
             ForceQuantity::Inertia(_)
@@ -310,6 +320,9 @@ impl<'a> DependencyTable<'a> {
             Quantity::State(freedom, _) => {
                 origins.drivers.insert(freedom);
             }
+            Quantity::EventIndicator(_) => {
+                self.add_origins(ForceQuantity::KineticEnergy, &mut origins);
+            }
             Quantity::Parameter(parameter) => origins.add_parameter(mechanism, parameter),
             _ => {}
         }
@@ -320,9 +333,11 @@ impl<'a> DependencyTable<'a> {
     /// all others on the whole mechanism.
     fn add_origins(&self, force: ForceQuantity, origins: &mut Dependencies) {
         let (mechanism, structure) = (self.mechanism, self.structure);
-        if let ForceQuantity::Applied(force, _) = force {
+        if let ForceQuantity::Applied(force, _) = force
+            && !self.is_passive(force)
+        {
             let load = &mechanism.forces[force].load;
-            if let Load::Coordinate { coordinate, .. } = load {
+            if let Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } = load {
                 origins.extend(&structure.coordinate_dependencies(mechanism, coordinate));
             }
             for expression in load.expressions() {

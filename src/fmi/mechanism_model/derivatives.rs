@@ -31,7 +31,7 @@ impl MechanismModel {
         // Also after outputs at other points.
         self.solve_freedoms()?;
         let mut direction = Direction::zero(&self.mechanism);
-        let mut loads = vec![0.0; self.course.force_inputs.len()];
+        let mut loads = vec![0.0; self.solution.loads.len()];
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
@@ -58,7 +58,7 @@ impl MechanismModel {
                 _ => unreachable!("knowns are inputs, states, parameters and time"),
             }
         }
-        self.accelerate_freedoms(&mut direction, &loads)?;
+        self.accelerate_freedoms(&mut direction, &mut loads)?;
         let uses_forces = |unknown: &Quantity| match unknown {
             Quantity::Output(source) => source.uses_forces(&self.mechanism),
             _ => false,
@@ -94,7 +94,7 @@ impl MechanismModel {
     fn accelerate_freedoms(
         &mut self,
         direction: &mut Direction,
-        loads: &[f64],
+        loads: &mut [f64],
     ) -> Result<(), Failure> {
         let Some(free) = &mut self.free else {
             return Ok(());

@@ -37,6 +37,7 @@ pub(super) fn describe_decided<'a>(
     let mut outputs = Vec::new();
     let mut derivatives = Vec::new();
     let mut initial_unknowns = Vec::new();
+    let mut event_indicators = Vec::new();
     for (place, variable) in variables.iter().enumerate() {
         let value_reference = value_reference(place);
         let Some(known) = table.of(variable.quantity) else {
@@ -47,6 +48,10 @@ pub(super) fn describe_decided<'a>(
             dependencies: known.inputs,
             parameters: known.parameters,
         };
+        if variable.causality == Causality::EventIndicator {
+            event_indicators.push(unknown);
+            continue;
+        }
         let of = variable.derivative_of.map(|of| variables[of].causality);
         if of.is_some_and(Causality::is_state) {
             derivatives.push(unknown.clone());
@@ -88,6 +93,7 @@ pub(super) fn describe_decided<'a>(
         outputs,
         derivatives,
         initial_unknowns,
+        event_indicators,
     }
 }
 

@@ -4,8 +4,9 @@
 //! them; in model exchange it does.
 
 use super::force_input::ForceInput;
-use super::{MechanismModel, failed, without_value};
-use crate::dynamics::Given;
+use super::input::DriverInput;
+use super::{Course, MechanismModel, failed, without_value};
+use crate::dynamics::{FreeMotion, Given, Mode};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::kinematics::{Curve, Path, Progress};
@@ -145,6 +146,14 @@ impl MechanismModel {
     ///
     /// Freedoms have no acceleration there.
     pub(super) fn settle_freedoms(&mut self) -> Result<(), Failure> {
+        if let Some(state) = &mut self.course.free {
+            state.modes.fill((Mode::Free, 0.0));
+        }
+        self.settle()
+    }
+
+    /// Takes the committed pose and the states that the host has set for those of the motion.
+    fn settle(&mut self) -> Result<(), Failure> {
         if self.free.is_none() {
             return Ok(());
         }
@@ -167,7 +176,7 @@ impl MechanismModel {
         let state = course.free.as_mut().expect("made with the motion");
         // Nothing is left of a run before a reset, such as the length of its steps.
         free.resume(solver, state)
-            .and_then(|()| free.restart(solver, &given, velocity))
+            .and_then(|()| free.go_on_with(solver, &given, velocity))
             .map_err(failed)?;
         free.save(state);
         Ok(())
@@ -227,6 +236,40 @@ impl MechanismModel {
         exchanged.map_err(without_value)
     }
 
+    /// Returns whether held coordinates have drifted from where they are held, at the committed pose.
+    pub(super) fn wants_projection(&mut self) -> bool {
+        self.solve_freedoms().is_ok() && self.free.as_ref().is_some_and(FreeMotion::has_drifted)
+    }
+
+    /// Lets contacts bounce or rest, and friction stick or slide, at the committed pose. Returns whether
+    /// the states have other values.
+    ///
+    /// # Errors
+    ///
+    /// Freedoms have no acceleration there.
+    pub(super) fn settle_events(&mut self) -> Result<bool, Failure> {
+        if !self
+            .free
+            .as_ref()
+            .is_some_and(FreeMotion::has_passive_forces)
+        {
+            return Ok(false);
+        }
+        let states = |course: &Course| -> Vec<[f64; 2]> {
+            let inputs = course.inputs.iter();
+            let values = |input: &DriverInput| {
+                [Order::Position, Order::Velocity].map(|order| input.get(order))
+            };
+            inputs.map(values).collect()
+        };
+        let before = states(&self.course);
+        self.settle()?;
+        self.note_states();
+        self.set_driver_rates(self.course.time, 0.0, 0.0);
+        self.commit_pose();
+        Ok(states(&self.course) != before)
+    }
+
     /// Takes values and velocities of the coordinates in use for those that the host gives.
     fn note_states(&mut self) {
         let (Some(free), pose) = (&self.free, self.solver.pose()) else {
@@ -258,7 +301,7 @@ impl MechanismModel {
         else {
             return Ok(());
         };
-        free.solve_accelerations(solver, &mut solution.driver_rates, &solution.loads)
+        free.solve_accelerations(solver, solution)
             .map_err(without_value)
     }
 }

@@ -53,7 +53,7 @@ pub use variables::{Quantity, TABLE_VERSION, variables};
 use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
-use super::model::{Groups, Model};
+use super::model::{Groups, Model, StateChange};
 use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
@@ -173,7 +173,7 @@ impl Course {
             freshness: Freshness::Stale,
             sources: vec![[Source::default(); 2]; drivers],
             inputs: inputs.collect(),
-            force_inputs: vec![ForceInput::default(); solution.loads.len()],
+            force_inputs: vec![ForceInput::default(); mechanism.force_inputs().len()],
             free,
             lifted: vec![false; contacts],
             off_pulleys: vec![false; mechanism.pulleys()],
@@ -490,11 +490,17 @@ impl Model for MechanismModel {
     }
 
     fn wants_event(&mut self) -> bool {
-        self.wants_exchange()
+        self.wants_exchange() || self.wants_projection()
     }
 
-    fn exchange_states(&mut self) -> Result<bool, Failure> {
-        MechanismModel::exchange_states(self)
+    fn change_states(&mut self) -> Result<StateChange, Failure> {
+        let settled = self.settle_events()?;
+        let exchanged = self.exchange_states()?;
+        Ok(match (exchanged, settled) {
+            (true, _) => StateChange::Exchange,
+            (false, true) => StateChange::Values,
+            (false, false) => StateChange::None,
+        })
     }
 
     #[inline(always)]

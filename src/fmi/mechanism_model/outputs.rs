@@ -89,6 +89,7 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
         }
         Quantity::Output(OutputSource::Signal(signal, order)) => (group_of(signal), order),
         Quantity::State(_, order) => (COORDINATES, order),
+        Quantity::EventIndicator(_) => (COORDINATES, Order::Acceleration),
     };
     if order == Order::Position {
         group
@@ -252,6 +253,10 @@ impl MechanismModel {
                 Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.course.parameters[parameter.index()],
                 Quantity::Time => self.course.time,
+                Quantity::EventIndicator(index) => {
+                    let free = self.free.as_ref();
+                    free.map_or(1.0, |free| free.event_indicator(index))
+                }
                 Quantity::Residual => solver.residual(),
                 Quantity::Rcond => solver.rcond(),
                 Quantity::Iterations => f64::from(self.course.progress.iterations),

@@ -401,12 +401,12 @@ impl MechanismModel {
         Ok(())
     }
 
-    /// Returns whether the host integrates freedoms of a mechanism with stops: its trial points may lie
-    /// beyond a stop, the points that it accepts may not.
+    /// Returns whether the host integrates freedoms of a mechanism with open curves: its trial points may
+    /// lie beyond the end of a curve, the points that it accepts may not.
     fn hosts_freedoms(&self) -> bool {
         self.interface == Interface::ModelExchange
             && self.free.is_some()
-            && !self.mechanism.stops.is_empty()
+            && self.solver.has_ends_of_curves()
     }
 
     /// Finds the pose for values set since the last commit, and commits nothing. A `trial` may lie
@@ -425,7 +425,9 @@ impl MechanismModel {
         };
         self.set_path(start, h);
         let followed = match trial {
+            // Stops act on freedoms by their forces.
             true => self.solver.track_through_stops(&self.path),
+            false if self.free.is_some() => self.solver.track_past_stops(&self.path),
             false => self.solver.track(&self.path),
         };
         self.set_driver_rates(start, h, 1.0);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::rule::Source;
 use super::{Course, Freshness, MechanismModel, Quantity};
-use crate::dynamics::FreeState;
+use crate::dynamics::{FreeState, Mode, Passive};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
@@ -216,6 +216,8 @@ fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unread
         drivers,
         loads,
         energies,
+        modes,
+        passive,
     } = free;
     integrator.visit(|word| codec.word(word))?;
     codec.finite(tolerance)?;
@@ -224,7 +226,20 @@ fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unread
         codec.real(&mut rates.value)?;
         codec.each(&mut rates.derivatives, Codec::real)?;
     }
-    codec.each(loads.iter_mut().chain(energies), Codec::real)
+    codec.each(loads.iter_mut().chain(energies), Codec::real)?;
+    for ((mode, anchor), at) in modes.iter_mut().zip(passive) {
+        codec.one_of(mode, &Mode::ALL)?;
+        let Passive {
+            coordinate,
+            force,
+            bounds,
+            rounding,
+        } = at;
+        let reals = [anchor, &mut coordinate.value, force, rounding];
+        let reals = reals.into_iter().chain(&mut coordinate.derivatives);
+        codec.each(reals.chain(bounds), Codec::real)?;
+    }
+    Ok(())
 }
 
 fn visit_choices(

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::decisions::Decisions;
 use super::rule::{EXTRAPOLATION, RATES};
+use crate::dynamics;
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Dependencies, Output, OutputSource};
 use crate::mechanism::{
@@ -33,6 +34,8 @@ pub enum Quantity {
     Output(OutputSource),
     /// Value, velocity or acceleration of the coordinate in use for a freedom.
     State(DriverId, Order),
+    /// An event indicator, by its index.
+    EventIndicator(usize),
     /// Largest scaled residual of the constraint equations.
     Residual,
     /// Scaled reciprocal condition of the Jacobian.
@@ -49,8 +52,8 @@ pub enum Quantity {
 
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
 /// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
-/// from others, forces, solver, time, states that are no outputs; in the file's order within each
-/// group.
+/// from others, forces, solver, time, states that are no outputs, event indicators; in the file's
+/// order within each group.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
     variables_of(mechanism, &Decisions::of(mechanism))
@@ -80,6 +83,7 @@ pub(super) fn variables_of(
     if decisions.has_local_states {
         table.add_local_states(mechanism);
     }
+    table.add_event_indicators(mechanism);
     table.list
 }
 
@@ -257,6 +261,21 @@ impl Table {
                 self.add(name, description, quantity, traits, Kind::real(None, None));
                 self.list[place].derivative_of = (order > Order::Position).then(|| place - 1);
             }
+        }
+    }
+
+    /// Adds the event indicators of passive forces.
+    fn add_event_indicators(&mut self, mechanism: &Mechanism) {
+        let indicators = dynamics::event_indicators(mechanism);
+        for (index, force) in indicators.into_iter().enumerate() {
+            let name = &mechanism.forces[force].name;
+            self.add(
+                format!("event_indicator[{}]", index + 1),
+                format!("positive until `{name}` begins or ceases to hold, or what slides turns"),
+                Quantity::EventIndicator(index),
+                (Causality::EventIndicator, Variability::Continuous),
+                Kind::real(None, None),
+            );
         }
     }
 

@@ -48,6 +48,8 @@ pub struct ModelDescription<'a, Q> {
     pub derivatives: Vec<Unknown>,
     /// All outputs, but states, and calculated parameters.
     pub initial_unknowns: Vec<Unknown>,
+    /// The event indicators.
+    pub event_indicators: Vec<Unknown>,
     /// Groups of variables that are connected together.
     pub terminals: Vec<Terminal>,
 }

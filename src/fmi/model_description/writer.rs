@@ -22,8 +22,9 @@ pub(super) fn write<Q>(
     generated: Option<&str>,
 ) -> io::Result<()> {
     let (standard, variables) = (description.standard, &description.variables);
+    let indicators = description.event_indicators.len().to_string();
     let (version, guid, event_indicators) = match standard {
-        Version::Fmi2 => ("2.0", "guid", Some("0")),
+        Version::Fmi2 => ("2.0", "guid", Some(&*indicators)),
         Version::Fmi3 => ("3.0", "instantiationToken", None),
     };
     xml.create_element("fmiModelDescription")
@@ -424,7 +425,7 @@ fn causality_name(causality: Causality) -> &'static str {
         Causality::CalculatedParameter => "calculatedParameter",
         Causality::Input => "input",
         Causality::Output | Causality::StartedOutput | Causality::State => "output",
-        Causality::Local | Causality::LocalState => "local",
+        Causality::Local | Causality::LocalState | Causality::EventIndicator => "local",
         Causality::Independent => "independent",
     }
 }
@@ -445,6 +446,7 @@ fn initial_name(causality: Causality) -> Option<&'static str> {
         Causality::CalculatedParameter
         | Causality::Output
         | Causality::LocalState
+        | Causality::EventIndicator
         | Causality::Local => Some("calculated"),
         Causality::Input | Causality::Independent => None,
     }
@@ -465,14 +467,19 @@ fn write_structure<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> i
                 "InitialUnknown",
                 &description.initial_unknowns,
             ),
+            (
+                "EventIndicators",
+                "EventIndicator",
+                &description.event_indicators,
+            ),
         ] {
             let write = |xml: &mut Xml, element: &'static str| {
                 let mut unknowns = unknowns.iter();
                 unknowns.try_for_each(|unknown| write_unknown(xml, standard, element, unknown))
             };
             match standard {
-                // The schema forbids an empty list.
-                Version::Fmi2 if unknowns.is_empty() => {}
+                // The schema forbids an empty list, and knows none of event indicators.
+                Version::Fmi2 if unknowns.is_empty() || list == "EventIndicators" => {}
                 Version::Fmi2 => xml
                     .create_element(list)
                     .with_content(|xml| write(xml, "Unknown"))?,

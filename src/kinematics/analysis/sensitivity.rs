@@ -100,7 +100,7 @@ impl Sensitivity<'_> {
     }
 
     /// Returns a parameter with its change.
-    pub(in crate::kinematics) fn parameter_value(&self, parameter: ParameterId) -> Dual {
+    pub(crate) fn parameter_value(&self, parameter: ParameterId) -> Dual {
         self.parameters[parameter.index()].value
     }
 

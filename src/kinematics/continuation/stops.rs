@@ -69,6 +69,8 @@ pub(super) struct StopWatch {
     target: Option<Target>,
     /// The place on the path beyond which the next sub-step must not end.
     pub(super) most: f64,
+    /// Whether the motion may go beyond stops, but not beyond the ends of curves.
+    pub(super) only_curves: bool,
 }
 
 /// A limit, by the index of its stop.
@@ -166,6 +168,7 @@ impl StopWatch {
             rounding: vec![0.0; stops],
             target: None,
             most: f64::INFINITY,
+            only_curves: false,
         }
     }
 
@@ -227,6 +230,10 @@ impl StopWatch {
         let h = end - start;
         let mut shortest = f64::INFINITY;
         for stop in 0..self.here.len() {
+            let is_stop = matches!(compiled.stops[stop].owner, LimitOwner::Stop(_));
+            if self.only_curves && is_stop {
+                continue;
+            }
             let deviation = deviation(compiled, state, stop, bounds);
             let scale = self.scale(compiled, state, stop);
             self.note_rounding(stop, h, deviation, scale);

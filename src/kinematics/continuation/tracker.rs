@@ -69,6 +69,14 @@ impl PathTracker {
         done
     }
 
+    /// Does work on paths that lead through stops, but not beyond the ends of curves.
+    pub(in crate::kinematics) fn past_stops<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.stops.only_curves, true);
+        let done = work(self);
+        self.stops.only_curves = before;
+        done
+    }
+
     /// Returns the change points that the last path passed, in order.
     pub(in crate::kinematics) fn crossed(&self) -> &[Arc<Crossing>] {
         &self.crossed

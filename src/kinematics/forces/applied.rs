@@ -19,7 +19,7 @@ pub(super) struct AppliedForces {
 #[derive(Debug)]
 pub(super) struct AppliedForce {
     pub(super) place: Place,
-    /// Index of its first input among all inputs of forces, if it has inputs.
+    /// Index of its first load among all [`loads`](super::Forces::loads), if it has no law.
     pub(super) input: Option<usize>,
 }
 
@@ -36,7 +36,7 @@ pub(super) enum Place {
 pub(super) struct Circumstances<'a, N, P> {
     pub(super) parameter: &'a P,
     pub(super) time: N,
-    /// All inputs of forces.
+    /// All loads.
     pub(super) inputs: &'a [N],
 }
 
@@ -54,10 +54,13 @@ impl AppliedForce {
             return [self.input.map_or(zero, |first| around.inputs[first]), zero];
         };
         let size = law.evaluate(around.parameter, around.time, coordinate);
-        let energy = law.spring.as_ref().map_or(zero, |spring| {
+        let mut energy = law.spring.as_ref().map_or(zero, |spring| {
             let [stiffness, extension] = spring.evaluate(around.parameter, coordinate[0]);
             stiffness * extension.square() * 0.5
         });
+        if let Some(stop) = &law.stop {
+            energy += stop.energy(around.parameter, coordinate[0]);
+        }
         [size, energy]
     }
 
@@ -116,7 +119,9 @@ impl AppliedForces {
         let forces = mechanism.forces.iter().zip(inputs);
         let list = forces.map(|(force, &input)| AppliedForce {
             place: match &force.load {
-                Load::Coordinate { coordinate, .. } => Place::Coordinate(of_coordinate(coordinate)),
+                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
+                    Place::Coordinate(of_coordinate(coordinate))
+                }
                 Load::Marker { marker, axes, .. } => Place::Marker(*marker, *axes),
             },
             input,
@@ -151,7 +156,11 @@ impl AppliedForces {
                 })
             };
             match (&applied.place, &definition.load) {
-                (Place::Coordinate(relation), Load::Coordinate { coordinate, law }) => {
+                (
+                    Place::Coordinate(relation),
+                    Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. },
+                ) => {
+                    let law = definition.load.law();
                     let value = relation.value(at);
                     if coordinate.kind == CoordinateKind::Distance
                         && value <= distance_rounding(coordinate, at)
@@ -161,7 +170,7 @@ impl AppliedForces {
                     self.gradient.clear();
                     relation.gradient(at, &mut self.gradient);
                     let coordinate = [value, self.gradient.dot(q_dot)];
-                    let [force, stored] = applied.along(law.as_ref(), coordinate, around);
+                    let [force, stored] = applied.along(law, coordinate, around);
                     if !(force + stored).is_finite() {
                         return fault("has no finite value here");
                     }

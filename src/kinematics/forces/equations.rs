@@ -71,6 +71,17 @@ impl EquationsOfMotion {
         &self.coasting
     }
 
+    /// Adds a generalized force along a coordinate, whose partial derivatives by the drivers are
+    /// `partials` and whose rate is `rate`.
+    pub fn exert(&mut self, partials: impl Iterator<Item = f64>, force: f64, rate: f64) {
+        let efforts = self.bias.iter_mut().zip(&mut self.applied);
+        for ((bias, applied), partial) in efforts.zip(partials) {
+            *bias -= force * partial;
+            *applied -= force * partial;
+        }
+        self.applied_power += force * rate;
+    }
+
     /// Solves ∂q/∂u of each driver at the pose, at which the plan is factorised.
     fn solve_units(&mut self, compiled: &mut CompiledMechanism, state: &mut State) {
         if let ([unit], true) = (&mut self.units[..], state.has_single_driver()) {

@@ -356,10 +356,11 @@ impl Forces {
         let mut energy = zero;
         for (applied, definition) in self.applied.list.iter().zip(&self.mechanism.forces) {
             match (&applied.place, &definition.load) {
-                (Place::Coordinate(relation), Load::Coordinate { law, .. }) => {
+                (Place::Coordinate(relation), Load::Coordinate { .. } | Load::Passive { .. }) => {
+                    let law = definition.load.law();
                     let value = relation.along(&at);
                     let coordinate = [value.value, value.first()];
-                    let [force, stored] = applied.along(law.as_ref(), coordinate, &around);
+                    let [force, stored] = applied.along(law, coordinate, &around);
                     energy += stored;
                     for (column, partial) in probe.entries(&**relation, state) {
                         demand[column] -= force * partial;

@@ -32,7 +32,7 @@ pub struct Forces {
     has_parameters: bool,
     pub(super) masses: Masses<f64>,
     pub(super) applied: AppliedForces,
-    inputs: usize,
+    loads: usize,
     pub(super) factors: JacobianFactors,
     /// Rows that the factors leave out.
     set_aside: Vec<usize>,
@@ -63,7 +63,7 @@ pub struct KnownMotion<'a> {
     pub rates: &'a Rates,
     /// Rates of the drivers (`first` and `second`), to which those of q belong.
     pub driver_rates: &'a [Jet],
-    /// Sizes of the forces that are inputs, in the order of their variables.
+    /// Sizes of the forces without a law: [loads](Forces::loads).
     pub inputs: &'a [f64],
 }
 
@@ -89,8 +89,7 @@ impl Forces {
     pub(in crate::kinematics) fn new(compiled: &CompiledMechanism) -> Self {
         let system = &compiled.system;
         let mechanism = Arc::clone(system.mechanism());
-        let places = input_places(&mechanism);
-        let inputs = mechanism.force_inputs().len();
+        let (places, loads) = load_places(&mechanism);
         let (unknowns, drivers) = (system.unknowns(), mechanism.drivers.len());
         let rows = ReactionRows::new(system);
         Self {
@@ -100,7 +99,7 @@ impl Forces {
                 mechanism.parameters[p.index()].default
             }),
             applied: AppliedForces::new(&mechanism, &places),
-            inputs,
+            loads,
             factors: JacobianFactors::new(system, &compiled.structure, &compiled.plan),
             set_aside: compiled.redundant.now.clone(),
             contacts: Contact::all(&mechanism, &rows),
@@ -118,10 +117,11 @@ impl Forces {
         }
     }
 
-    /// Returns the number of inputs of forces.
+    /// Returns the number of loads: the sizes of forces that are inputs, in the order of their
+    /// variables, then those of passive forces, in file order.
     #[must_use]
-    pub fn inputs(&self) -> usize {
-        self.inputs
+    pub fn loads(&self) -> usize {
+        self.loads
     }
 
     /// Returns a result; it has a meaning if the last call of
@@ -568,18 +568,20 @@ pub(super) fn solve_rates(
     compiled.plan.solve_rates(&mut block_state, driver_rates);
 }
 
-/// Returns the indices, in a list of all inputs of forces, of those of each force.
-fn input_places(mechanism: &Mechanism) -> Vec<Option<usize>> {
+/// Returns the indices, in a list of all loads, of those of each force, and their number.
+fn load_places(mechanism: &Mechanism) -> (Vec<Option<usize>>, usize) {
     let mut next = 0;
-    let places = mechanism.forces.iter().map(|force| {
-        let first = next;
-        if force.load.is_input() {
-            next += match force.load {
-                Load::Coordinate { .. } => 1,
-                Load::Marker { .. } => 3,
+    let mut places = vec![None; mechanism.forces.len()];
+    for is_passive in [false, true] {
+        for (place, force) in places.iter_mut().zip(&mechanism.forces) {
+            let loads = match &force.load {
+                Load::Passive { .. } if is_passive => 1,
+                load if !is_passive && load.is_input() => load.components(),
+                _ => continue,
             };
+            *place = Some(next);
+            next += loads;
         }
-        force.load.is_input().then_some(first)
-    });
-    places.collect()
+    }
+    (places, next)
 }

@@ -152,6 +152,7 @@ impl CompiledMechanism {
         let named = named.collect();
         let system = System::new(mechanism);
         let stops = system.mechanism().stops.iter().enumerate();
+        let stops = stops.filter(|(_, stop)| stop.is_rigid());
         let stops = stops.map(|stop| StopRelation::of_stop(&system, stop));
         let curves = system.curves();
         let curves = curves.filter_map(|curve| StopRelation::of_curve(&system, curve));
@@ -169,6 +170,14 @@ impl CompiledMechanism {
             system,
         };
         (compiled, pairs_up)
+    }
+
+    /// Returns whether points move on open curves.
+    pub(in crate::kinematics) fn has_ends_of_curves(&self) -> bool {
+        let owners = self.stops.iter().map(|watched| watched.owner);
+        owners
+            .into_iter()
+            .any(|owner| matches!(owner, LimitOwner::Curve(..)))
     }
 
     /// Compiles structure and plan for all rows but those set aside.

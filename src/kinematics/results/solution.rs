@@ -50,8 +50,8 @@ pub struct Solution {
     pub rates: Rates,
     /// Value, velocity and acceleration of each driver, for which rates and forces are solved.
     pub driver_rates: Vec<Jet>,
-    /// Sizes of the forces that are inputs \[SI\], in the order of their variables; empty unless
-    /// forces are sought.
+    /// Sizes of the forces without a law \[SI\], [inputs and passive forces](Forces::loads); empty
+    /// unless forces are sought.
     pub loads: Vec<f64>,
     forces: Option<Forces>,
     /// The parts of the forces that are sought.
@@ -78,7 +78,7 @@ impl Solution {
     /// Seeks forces too, from the next [`solve`](Self::solve) on. Those that are inputs are zero.
     pub fn seek_forces(&mut self, solver: &Solver) {
         let forces = solver.forces();
-        self.loads = vec![0.0; forces.inputs()];
+        self.loads = vec![0.0; forces.loads()];
         self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
         let outputs = &solver.mechanism().outputs;

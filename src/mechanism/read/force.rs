@@ -116,6 +116,7 @@ impl<'a> Context<'a> {
                     value,
                     spring,
                     damping,
+                    ..ForceLaw::default()
                 }),
             },
         })

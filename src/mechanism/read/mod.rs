@@ -21,6 +21,7 @@ mod derived;
 mod driver;
 mod force;
 mod freedom;
+mod friction;
 mod joint;
 mod kind;
 mod limits;
@@ -28,6 +29,7 @@ mod motion;
 mod names;
 mod number;
 mod parameter;
+mod placed;
 mod plausible;
 mod points;
 mod reference;
@@ -46,7 +48,7 @@ use kind::{Entry, Fields};
 use root::Root;
 use table::Field;
 
-use super::{Diagnostic, Mechanism, Source, syntax};
+use super::{Diagnostic, Mechanism, Source, Stop, syntax};
 
 impl Mechanism {
     /// Reads a mechanism file; returns the warnings with the mechanism.
@@ -130,6 +132,13 @@ impl<'a> Context<'a> {
         let measures = self.each(&root.measures, measure);
         let sections = [&root.drivers, &root.freedoms, &root.measures];
         self.declare_coordinates(sections, &drivers, &measures);
+        let stops = self.each(&root.stops, Self::stop);
+        let mut forces = self.each(&root.forces, force);
+        // A rigid stop exerts nothing where all is driven: the motion ends there.
+        let exerts = |stop: &Stop| has_freedoms || !stop.is_rigid();
+        let of_stops = stops.iter().enumerate().filter(|(_, stop)| exerts(stop));
+        forces.extend(of_stops.map(|(index, stop)| stop.force(index)));
+        forces.extend(self.each(&root.friction, Self::friction));
         let mut mechanism = Mechanism {
             name: root.name.value.unwrap_or_default(),
             description: root.description.value.unwrap_or_default(),
@@ -146,8 +155,8 @@ impl<'a> Context<'a> {
             drivers,
             measures,
             derived: Vec::new(),
-            forces: self.each(&root.forces, force),
-            stops: self.each(&root.stops, Self::stop),
+            forces,
+            stops,
             outputs: self.outputs(&root.outputs.or_empty()),
             simulation,
             canonical: syntax::canonical(document) + &self.file_tables,

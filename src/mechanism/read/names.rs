@@ -71,6 +71,7 @@ impl<'a> Context<'a> {
             ("measure", &root.measures),
             ("force", &root.forces),
             ("stop", &root.stops),
+            ("friction", &root.friction),
         ];
         let entries = sections
             .iter()

@@ -16,6 +16,7 @@ use super::derived::AnyMeasure;
 use super::driver::DriverKeys;
 use super::force::AnyForce;
 use super::freedom::FreedomKeys;
+use super::friction::AnyFriction;
 use super::joint::AnyJoint;
 #[cfg(feature = "cli")]
 use super::kind::Described;
@@ -62,8 +63,10 @@ table! {
         measures: Vec<Entry<'a>> = Named(PhantomData::<AnyMeasure>),
         /// Forces on the bodies, besides gravity.
         forces: Vec<Entry<'a>> = Named(PhantomData::<AnyForce>),
-        /// Limits of coordinates, at which the motion ends.
+        /// Limits of coordinates.
         stops: Vec<Entry<'a>> = Named(PhantomData::<AnyStop>),
+        /// Friction along coordinates.
+        friction: Vec<Entry<'a>> = Named(PhantomData::<AnyFriction>),
         /// Outputs of the FMU.
         outputs: Fields<'a> = Section(PhantomData::<OutputKeys<'static>>),
         /// Default experiment.

@@ -1,129 +1,128 @@
 //! Stops: where a coordinate may not go.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names;
-use crate::mechanism::wording::{quoted, shown};
-use crate::mechanism::{Coordinate, CoordinateKind, Span, Stop};
+use crate::mechanism::wording::shown;
+use crate::mechanism::{Coordinate, CoordinateKind, Expression, Stop, StopContact};
 
 use super::context::Context;
-use super::coordinate::CoordinateKeys;
-#[cfg(feature = "cli")]
-use super::kind::NAME;
-use super::kind::{AnyOf, Entry, Item, Kind, Text, schema};
-use super::number::{NUMBER, Quantity};
-use super::table::table;
+use super::kind::{Entry, Fields, Text};
+use super::number::{NUMBER, Quantity, RATIO};
+use super::placed::{Placed, Placing};
+use super::table::{Field, table};
 
 table! {
-    /// Limits that a coordinate does not pass: the motion ends there.
+    /// Limits that a coordinate does not pass: driven motion ends there, free motion bounces or rests.
+    /// With a stiffness the coordinate goes beyond against a spring.
     struct StopKeys<'a> {
         /// Least value of the coordinate [m or rad].
         min: Quantity = NUMBER,
         /// Largest value of the coordinate [m or rad].
         max: Quantity = NUMBER,
+        /// Part of the velocity with which free motion bounces, from 0 to 1; zero if left out.
+        restitution: Quantity = RATIO,
+        /// Stiffness of an elastic stop [N/m or N.m/rad].
+        stiffness: Quantity = NUMBER.positive(),
+        /// Coefficient of its damper [N.s/m or N.m.s/rad].
+        damping: Quantity = NUMBER.not_negative(),
         /// Description in one line.
         description: String = Text,
     }
-
-    /// The coordinate of a measure or driver.
-    struct OfKeys<'a> {
-        /// Measure or driver whose coordinate is limited.
-        #[required("\"travel\"")]
-        of: (&'a str, Span) = CoordinateName,
-    }
-}
-
-/// Name of a measure or driver, which is looked up later.
-struct CoordinateName;
-
-impl<'a> Kind<'a> for CoordinateName {
-    type Value = (&'a str, Span);
-
-    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<(&'a str, Span)> {
-        Some((context.text(item.value)?, item.span()))
-    }
-
-    schema! {{ "type": "string", "pattern": NAME }}
 }
 
 /// A stop of either shape.
-pub(super) type AnyStop =
-    AnyOf<(CoordinateKeys<'static>, StopKeys<'static>), (OfKeys<'static>, StopKeys<'static>)>;
+pub(super) type AnyStop = Placed<StopKeys<'static>>;
+
+const PLACING: Placing = Placing {
+    noun: "stop",
+    verb: "limit",
+    code: code::STOP_COORDINATE,
+};
 
 impl<'a> Context<'a> {
     /// Reads a stop, after the measures and drivers.
     pub(super) fn stop(&mut self, entry: Entry<'a>) -> Option<Stop> {
-        let fields = self.entry_fields(entry, "stop")?;
-        let has = |key| fields.table.contains_key(key);
-        let (place, has) = match (has("coordinate"), has("of")) {
-            (true, false) => {
-                let (keys, limits) = self.table::<(CoordinateKeys<'a>, StopKeys<'a>)>(&fields);
-                let coordinate = self.coordinate(keys);
-                return self.limited(entry, (coordinate, None), limits);
-            }
-            (false, true) => {
-                let (keys, limits) = self.table::<(OfKeys<'a>, StopKeys<'a>)>(&fields);
-                let (name, coordinate) = keys.of.value.map_or((None, None), |(name, span)| {
-                    (Some(name.to_owned()), self.coordinate_of(name, &span))
-                });
-                return self.limited(entry, (coordinate, name), limits);
-            }
-            (true, true) => ("both", "and"),
-            (false, false) => ("neither", "nor"),
+        let (coordinate, of, keys) = self.placed::<StopKeys<'a>>(entry, &PLACING)?;
+        let contact = self.contact(&keys);
+        let [min, max] = self.limits_of(coordinate, [keys.min, keys.max], &keys.owner);
+        Some(Stop {
+            name: entry.name().to_owned(),
+            description: keys.description.value.unwrap_or_default(),
+            coordinate: coordinate?,
+            of,
+            min,
+            max,
+            contact: contact?,
+        })
+    }
+
+    /// Returns the behaviour at the limits.
+    fn contact(&mut self, keys: &StopKeys<'a>) -> Option<StopContact> {
+        let StopKeys {
+            owner,
+            restitution,
+            stiffness,
+            damping,
+            ..
+        } = keys;
+        let expression = |field: &Field<Quantity>| {
+            let quantity = field.value.as_ref();
+            quantity.map(|quantity| quantity.expression.clone())
         };
-        let message = format!("{} has {place} `coordinate` {has} `of`", fields.subject);
-        self.error(code::STOP_COORDINATE, fields.place.clone(), message)
-            .suggest(
-                "give `of = \"MEASURE\"` to limit a measure or a driver, or `coordinate` and \
-                 `markers`",
-            );
-        None
+        if let Some(value) = restitution.number()
+            && !(0.0..=1.0).contains(&value)
+        {
+            let message = format!("`restitution` must be from 0 to 1, is {}", shown(value));
+            self.error(code::ILLEGAL_VALUE, restitution.span.clone(), message);
+        }
+        match (&stiffness.key, &restitution.key, &damping.key) {
+            (None, _, Some(span)) => {
+                let message = format!("{} has `damping`, but no `stiffness`", owner.subject);
+                self.error(code::UNKNOWN_KEY, span.clone(), message)
+                    .suggest("a damper stands beside the spring of an elastic stop");
+                None
+            }
+            (Some(_), Some(span), _) => {
+                let message = format!("{} has both `stiffness` and `restitution`", owner.subject);
+                self.error(code::UNKNOWN_KEY, span.clone(), message)
+                    .suggest(
+                        "an elastic stop has a `stiffness` and a `damping`, a rigid one a \
+                     `restitution`",
+                    );
+                None
+            }
+            (Some(_), None, _) => Some(StopContact::Elastic {
+                stiffness: expression(stiffness)?,
+                damping: expression(damping),
+            }),
+            (None, _, None) => Some(StopContact::Rigid {
+                restitution: expression(restitution),
+            }),
+        }
     }
 
-    /// Returns the coordinate of a measure or driver; `None` with an error, its own or one here.
-    fn coordinate_of(&mut self, name: &str, span: &Span) -> Option<Coordinate> {
-        let mut all = self.coordinates.iter();
-        if let Some((_, coordinate)) = all.find(|(own, _)| *own == name) {
-            return *coordinate;
-        }
-        if self.computed.contains(&name) {
-            let message = format!("{} is a computed measure", quoted(name));
-            self.error(code::UNKNOWN_COORDINATE, span.clone(), message)
-                .suggest("a stop limits a coordinate: name one that the measure is computed from");
-            return None;
-        }
-        let candidates: Vec<&str> = self.coordinates.iter().map(|(own, _)| *own).collect();
-        let message = format!("no measure or driver {}", quoted(name));
-        let help = names::help(name, &candidates, &[]);
-        self.error(code::UNKNOWN_COORDINATE, span.clone(), message)
-            .help = help;
-        None
-    }
-
-    /// Checks the limits of a coordinate, which is `None` after an error.
-    fn limited(
+    /// Checks the limits of a coordinate, which is `None` after an error, and returns them.
+    fn limits_of(
         &mut self,
-        entry: Entry<'a>,
-        (coordinate, of): (Option<Coordinate>, Option<String>),
-        keys: StopKeys<'a>,
-    ) -> Option<Stop> {
+        coordinate: Option<Coordinate>,
+        [min, max]: [Field<Quantity>; 2],
+        owner: &Fields<'a>,
+    ) -> [Option<Expression>; 2] {
         let kind = coordinate.map(|coordinate| coordinate.kind);
-        for limit in [&keys.min, &keys.max] {
+        for limit in [&min, &max] {
             if let (Some(kind), Some(value)) = (kind, &limit.value) {
                 self.warn_of_unit(value, kind.unit());
             }
         }
-        if keys.min.key.is_none() && keys.max.key.is_none() {
-            let owner = &keys.owner;
+        if min.key.is_none() && max.key.is_none() {
             let message = format!("{} has neither `min` nor `max`", owner.subject);
             self.error(code::MISSING_KEY, owner.place.clone(), message)
                 .suggest("a stop has a `min`, a `max` or both");
         }
         let expression = |limit: &Option<Quantity>| limit.as_ref().map(|q| q.expression.clone());
-        let [min, max] = [&keys.min, &keys.max].map(|limit| expression(&limit.value));
-        let span = keys.max.span.clone();
+        let expressions = [&min, &max].map(|limit| expression(&limit.value));
+        let span = max.span.clone();
         let unit = kind.map(CoordinateKind::unit);
-        if let [Some(least), Some(most)] =
-            self.limits([keys.min, keys.max], ("the value", None), unit)
+        if let [Some(least), Some(most)] = self.limits([min, max], ("the value", None), unit)
             && least >= most
             && most >= least
         {
@@ -132,13 +131,6 @@ impl<'a> Context<'a> {
             self.error(code::OUT_OF_RANGE, span, message)
                 .suggest("a coordinate that cannot move is held in `[constraints]`");
         }
-        Some(Stop {
-            name: entry.name().to_owned(),
-            description: keys.description.value.unwrap_or_default(),
-            coordinate: coordinate?,
-            of,
-            min,
-            max,
-        })
+        expressions
     }
 }

@@ -214,7 +214,9 @@ impl Balance<'_> {
         for (index, force) in mechanism.forces.iter().enumerate() {
             let [x, y, torque] = [0, 1, 2].map(|k| self.value(ForceQuantity::Applied(index, k)));
             match &force.load {
-                Load::Coordinate { coordinate, .. } => self.add_effort(coordinate, x),
+                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
+                    self.add_effort(coordinate, x);
+                }
                 Load::Marker { marker, axes, .. } => {
                     let axis = axes.map_or(Vector2::x(), |axes| self.axis(axes));
                     let across = Vector2::new(-axis.y, axis.x);

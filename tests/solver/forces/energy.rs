@@ -50,9 +50,10 @@ fn power_becomes_energy() {
         for (index, force) in mechanism.forces.iter().enumerate() {
             let size = [0, 1, 2].map(|k| forces.value(ForceQuantity::Applied(index, k)));
             let work = match &force.load {
-                Load::Coordinate { coordinate, law } => {
+                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
+                    let law = force.load.law();
                     let [value, rate] = coordinate_of(&solver, &rates, coordinate);
-                    let spring = law.as_ref().and_then(|law| law.spring.as_ref());
+                    let spring = law.and_then(|law| law.spring.as_ref());
                     let elastic = spring.map_or(0.0, |spring| {
                         let parameters = &solver.pose().parameters;
                         let [stiffness, extension] =

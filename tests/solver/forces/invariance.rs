@@ -139,7 +139,7 @@ fn scalars(mechanism: &Mechanism, scale: Scale) -> Vec<(ForceQuantity, f64)> {
     for (index, force) in mechanism.forces.iter().enumerate() {
         let applied = |k| ForceQuantity::Applied(index, k);
         match &force.load {
-            Load::Coordinate { coordinate, .. } => {
+            Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
                 all.push((applied(0), scale.effort(coordinate.kind)));
             }
             Load::Marker { .. } => {
@@ -378,7 +378,9 @@ proptest! {
             let given = inputs(&base);
             let mut units = base.forces.iter().filter(|force| force.load.is_input());
             let factors = units.by_ref().flat_map(|force| match &force.load {
-                Load::Coordinate { coordinate, .. } => vec![scale.effort(coordinate.kind)],
+                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
+                    vec![scale.effort(coordinate.kind)]
+                }
                 Load::Marker { .. } => vec![scale.force(), scale.force(), scale.force() * length],
             });
             let larger: Vec<f64> = given.iter().zip(factors).map(|(u, factor)| u * factor).collect();
@@ -499,7 +501,12 @@ fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
                     value,
                     spring,
                     damping,
-                } = law;
+                    stop: None,
+                    friction: None,
+                } = law
+                else {
+                    unreachable!("no shipped mechanism has these");
+                };
                 let (own, effort) = (
                     scale.coordinate(coordinate.kind),
                     scale.effort(coordinate.kind),

@@ -61,20 +61,20 @@ pub(crate) fn loaded(name: &str) -> Mechanism {
     add(Load::Coordinate {
         coordinate: along(CoordinateKind::X, first),
         law: Some(ForceLaw {
-            value: None,
             spring: Some(Spring {
                 stiffness: number(120.0),
                 free: number(0.05),
             }),
             damping: Some(number(3.0)),
+            ..ForceLaw::default()
         }),
     });
     add(Load::Coordinate {
         coordinate: along(CoordinateKind::Angle, ground),
         law: Some(ForceLaw {
             value: Some(number(1.7)),
-            spring: None,
             damping: Some(number(0.4)),
+            ..ForceLaw::default()
         }),
     });
     add(Load::Coordinate {
@@ -119,7 +119,7 @@ impl Loaded {
             }
         });
         let driver_rates = driver_rates.collect();
-        let inputs = (0..solver.forces().inputs())
+        let inputs = (0..solver.forces().loads())
             .map(|k| 5.0 * spread(k) - 2.0)
             .collect();
         Self::solved(solver, driver_rates, inputs)

@@ -14,6 +14,7 @@
 //! | `state` | saved and restored |
 
 mod closed_form;
+mod events;
 mod invariance;
 mod lagrange;
 mod minimal;
@@ -22,5 +23,4 @@ mod published;
 mod refused;
 mod run;
 mod state;
-mod stops;
 mod taylor;

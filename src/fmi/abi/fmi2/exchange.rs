@@ -1,9 +1,9 @@
-//! Model exchange. There are no event indicators.
+//! Model exchange.
 
 use super::types::{fmi2Boolean, fmi2EventInfo, fmi2False, fmi2Real};
-use crate::fmi::Call;
 use crate::fmi::abi::arguments::{fill, room, slice};
 use crate::fmi::abi::calls::instance_calls;
+use crate::fmi::{Call, StateChange};
 
 instance_calls! {
     /// `fmi2EnterEventMode`.
@@ -12,8 +12,8 @@ instance_calls! {
     fmi2EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
     /// `fmi2SetTime`.
     fmi2SetTime(time: fmi2Real) = |instance| instance.set_time(time);
-    /// `fmi2NewDiscreteStates`: there are no discrete states. The continuous states may be
-    /// exchanged. The simulation ends at an event for whose values no pose exists.
+    /// `fmi2NewDiscreteStates`: no discrete state needs another update. The continuous states may jump
+    /// or be exchanged. The simulation ends at an event for whose values no pose exists.
     fmi2NewDiscreteStates(event_info: *mut fmi2EventInfo) = |instance| {
         instance.allow(Call::NewDiscreteStates)?;
         let to = room("fmi2eventInfo", event_info, 1)?;
@@ -21,8 +21,8 @@ instance_calls! {
         fill(to, [fmi2EventInfo {
             newDiscreteStatesNeeded: fmi2False,
             terminateSimulation: event.must_end.into(),
-            nominalsOfContinuousStatesChanged: event.states_changed.into(),
-            valuesOfContinuousStatesChanged: event.states_changed.into(),
+            nominalsOfContinuousStatesChanged: (event.states == StateChange::Exchange).into(),
+            valuesOfContinuousStatesChanged: (event.states != StateChange::None).into(),
             nextEventTimeDefined: fmi2False,
             nextEventTime: 0.0,
         }]);
@@ -55,9 +55,12 @@ instance_calls! {
         fill(to, instance.derivatives_of_states(count)?);
         Ok(())
     };
-    /// `fmi2GetEventIndicators`: there are none.
-    fmi2GetEventIndicators(_: *mut fmi2Real, count: usize) = |instance| {
-        instance.event_indicators(count)
+    /// `fmi2GetEventIndicators`.
+    fmi2GetEventIndicators(indicators: *mut fmi2Real, count: usize) = |instance| {
+        instance.allow(Call::GetEventIndicators)?;
+        let to = room("eventIndicators", indicators, count)?;
+        fill(to, instance.event_indicators(count)?);
+        Ok(())
     };
     /// `fmi2GetContinuousStates`.
     fmi2GetContinuousStates(states: *mut fmi2Real, count: usize) = |instance| {

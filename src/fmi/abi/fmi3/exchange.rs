@@ -1,9 +1,9 @@
-//! Events, and model exchange. There are no discrete states and no event indicators.
+//! Events, and model exchange.
 
 use super::types::{fmi3Boolean, fmi3Float64};
-use crate::fmi::Call;
 use crate::fmi::abi::arguments::{check_room, fill, room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
+use crate::fmi::{Call, StateChange};
 
 instance_calls! {
     /// `fmi3EnterEventMode`.
@@ -14,8 +14,8 @@ instance_calls! {
     fmi3EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
     /// `fmi3SetTime`.
     fmi3SetTime(time: fmi3Float64) = |instance| instance.set_time(time);
-    /// `fmi3UpdateDiscreteStates`: there are no discrete states. The continuous states may be
-    /// exchanged. The simulation ends at an event for whose values no pose exists.
+    /// `fmi3UpdateDiscreteStates`: no discrete state needs another update. The continuous states may jump
+    /// or be exchanged. The simulation ends at an event for whose values no pose exists.
     fmi3UpdateDiscreteStates(
         discrete_states_need_update: *mut fmi3Boolean,
         terminate_simulation: *mut fmi3Boolean,
@@ -41,8 +41,8 @@ instance_calls! {
         for (_, flag) in flags {
             flag.write(false);
         }
-        nominals_of_continuous_states_changed.write(event.states_changed);
-        values_of_continuous_states_changed.write(event.states_changed);
+        nominals_of_continuous_states_changed.write(event.states == StateChange::Exchange);
+        values_of_continuous_states_changed.write(event.states != StateChange::None);
         next_event_time.write_unaligned(0.0);
         terminate_simulation.write(event.must_end);
         Ok(())
@@ -62,10 +62,10 @@ instance_calls! {
         terminate_simulation.write(step.must_end);
         Ok(())
     };
-    /// `fmi3GetNumberOfEventIndicators`: always 0.
+    /// `fmi3GetNumberOfEventIndicators`.
     fmi3GetNumberOfEventIndicators(count: *mut usize) = |instance| {
-        instance.allow(Call::GetNumberOfEventIndicators)?;
-        write("nEventIndicators", count, 0)
+        let indicators = instance.number_of_event_indicators()?;
+        write("nEventIndicators", count, indicators)
     };
     /// `fmi3GetNumberOfContinuousStates`.
     fmi3GetNumberOfContinuousStates(count: *mut usize) = |instance| {
@@ -84,9 +84,12 @@ instance_calls! {
         fill(to, instance.derivatives_of_states(count)?);
         Ok(())
     };
-    /// `fmi3GetEventIndicators`: there are none.
-    fmi3GetEventIndicators(_: *mut fmi3Float64, count: usize) = |instance| {
-        instance.event_indicators(count)
+    /// `fmi3GetEventIndicators`.
+    fmi3GetEventIndicators(indicators: *mut fmi3Float64, count: usize) = |instance| {
+        instance.allow(Call::GetEventIndicators)?;
+        let to = room("eventIndicators", indicators, count)?;
+        fill(to, instance.event_indicators(count)?);
+        Ok(())
     };
     /// `fmi3GetContinuousStates`.
     fmi3GetContinuousStates(states: *mut fmi3Float64, count: usize) = |instance| {

@@ -1,0 +1,442 @@
+//! Forces that follow from the motion: those of rigid stops and of friction.
+//!
+//! Each acts along a coordinate c. While its [`Mode`] lasts the motion is smooth: a stop that nothing
+//! touches exerts nothing, friction that slides exerts what its law says, and a stop that is touched and
+//! friction that sticks hold their coordinate, c̈ = 0, by the force that this takes.
+
+use nalgebra::DMatrix;
+
+use super::triangular::{ascend, descend, factorise};
+
+use crate::kinematics::constraint::{Constraint, of_coordinate};
+use crate::kinematics::{EquationsOfMotion, Sensitivity, Solver};
+use crate::mechanism::{
+    DriverId, Dual, ElasticStop, Expression, FrictionLaw, Jet, Load, Mechanism, ParameterId,
+    PassiveCause,
+};
+
+/// Gap and speed up to which a coordinate is at a stop and at rest, in radians or sizes of the
+/// mechanism, and those per second: some hundred roundings.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
+/// The state of a passive force while the motion is smooth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Nothing touches the stop.
+    Free,
+    /// The coordinate rests at the least value of its stop, or is beyond that of an elastic one.
+    AtMin,
+    /// The same at the largest value.
+    AtMax,
+    /// The coordinate is beyond the least value of an elastic stop, whose damper holds the spring off.
+    LooseAtMin,
+    /// The same at the largest value.
+    LooseAtMax,
+    /// Friction sticks.
+    Sticking,
+    /// Friction while the coordinate grows.
+    Growing,
+    /// Friction while the coordinate falls.
+    Falling,
+}
+
+impl Mode {
+    /// All modes; their places are those of a saved state.
+    pub const ALL: [Self; 8] = [
+        Self::Free,
+        Self::AtMin,
+        Self::AtMax,
+        Self::LooseAtMin,
+        Self::LooseAtMax,
+        Self::Sticking,
+        Self::Growing,
+        Self::Falling,
+    ];
+
+    /// Returns the direction in which the coordinate slides, or in which its stop pushes.
+    pub(super) fn sign(self) -> f64 {
+        match self {
+            Self::AtMin | Self::LooseAtMin | Self::Growing => 1.0,
+            Self::AtMax | Self::LooseAtMax | Self::Falling => -1.0,
+            Self::Free | Self::Sticking => 0.0,
+        }
+    }
+}
+
+/// A passive force at a point of the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passive {
+    /// Value, rate and acceleration of its coordinate \[SI\].
+    pub coordinate: Jet,
+    /// The force along it \[N or N m\]; that of an elastic stop may pull where it is loose.
+    pub force: f64,
+    /// Least and largest value of a stop \[m or rad\], infinite without one; the bounds of friction
+    /// that sticks \[N or N m\].
+    pub bounds: [f64; 2],
+    /// Gap, or speed, that is rounding \[m or rad, or those per second\].
+    pub rounding: f64,
+}
+
+impl Passive {
+    pub(super) const NONE: Self = Self {
+        coordinate: Jet {
+            value: 0.0,
+            derivatives: [0.0; 2],
+        },
+        force: 0.0,
+        bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        rounding: 0.0,
+    };
+
+    /// Returns the mode of an elastic stop.
+    pub(super) fn elastic_mode(&self) -> Mode {
+        let [value, rate] = [self.coordinate.value, self.coordinate.first()];
+        let [least, most] = self.bounds;
+        // At a limit it is touched if the coordinate goes beyond.
+        let is_beyond = |beyond: f64, rate: f64| {
+            beyond > self.rounding || beyond.abs() <= self.rounding && rate > 0.0
+        };
+        let touched = if is_beyond(least - value, -rate) {
+            Mode::AtMin
+        } else if is_beyond(value - most, rate) {
+            Mode::AtMax
+        } else {
+            return Mode::Free;
+        };
+        let is_inside = (least..=most).contains(&value);
+        match is_inside || touched.sign() * self.force > 0.0 {
+            true => touched,
+            false if touched == Mode::AtMin => Mode::LooseAtMin,
+            false => Mode::LooseAtMax,
+        }
+    }
+}
+
+/// The passive forces of a mechanism.
+#[derive(Debug)]
+pub(super) struct PassiveForces {
+    /// Those without a law, then elastic stops.
+    pub(super) list: Vec<PassiveForce>,
+    loads: usize,
+    pub(super) modes: Vec<Mode>,
+    /// The values at which coordinates are held.
+    pub(super) anchors: Vec<f64>,
+    /// ∂c/∂u: a row per force, a column per driver.
+    pub(super) rows: DMatrix<f64>,
+    /// The forces that hold.
+    holding: Vec<usize>,
+    /// L⁻¹ (∂c/∂u)ᵀ of the freedoms: a column per force that holds.
+    columns: DMatrix<f64>,
+    /// The factor of W = ∂c/∂u J⁻¹ (∂c/∂u)ᵀ of the forces that hold.
+    factor: DMatrix<f64>,
+    /// The forces that hold, or impulses.
+    forces: Vec<f64>,
+}
+
+/// One passive force.
+#[derive(Debug)]
+pub(super) struct PassiveForce {
+    /// Index of the force in the mechanism.
+    pub(super) index: usize,
+    relation: Box<dyn Constraint>,
+    is_angle: bool,
+    pub(super) cause: Cause,
+}
+
+/// Cause of a passive force.
+#[derive(Clone, Debug)]
+pub(super) enum Cause {
+    /// A rigid stop, by its index.
+    Stop(usize),
+    /// An elastic stop: its force has a law, which changes where it is touched.
+    Elastic(ElasticStop),
+    Friction(FrictionLaw),
+}
+
+impl PassiveForces {
+    pub(super) fn new(mechanism: &Mechanism, freedoms: usize) -> Self {
+        let forces = mechanism.forces.iter().enumerate();
+        let all = forces.filter_map(|(index, force)| {
+            let (coordinate, cause) = match &force.load {
+                Load::Passive { coordinate, cause } => match cause {
+                    PassiveCause::Stop(stop) => (coordinate, Cause::Stop(*stop)),
+                    PassiveCause::Friction(law) => (coordinate, Cause::Friction(law.clone())),
+                },
+                Load::Coordinate { coordinate, law } => {
+                    let stop = law.as_ref().and_then(|law| law.stop.clone());
+                    (coordinate, Cause::Elastic(stop?))
+                }
+                Load::Marker { .. } => return None,
+            };
+            Some(PassiveForce {
+                index,
+                relation: of_coordinate(coordinate),
+                is_angle: coordinate.kind.is_angle(),
+                cause,
+            })
+        });
+        let (mut list, elastic): (Vec<_>, Vec<_>) =
+            all.partition(|passive| !matches!(passive.cause, Cause::Elastic(_)));
+        let loads = list.len();
+        list.extend(elastic);
+        let (count, drivers) = (list.len(), mechanism.drivers.len());
+        Self {
+            modes: vec![Mode::Free; count],
+            anchors: vec![0.0; count],
+            rows: DMatrix::zeros(count, drivers),
+            holding: Vec::with_capacity(count),
+            columns: DMatrix::zeros(freedoms, count),
+            factor: DMatrix::zeros(count, count),
+            forces: vec![0.0; count],
+            loads,
+            list,
+        }
+    }
+
+    /// Forgets what is touched and what sticks.
+    pub(super) fn reset(&mut self) {
+        self.modes.fill(Mode::Free);
+    }
+
+    /// Returns how many of them have no law: their sizes are loads.
+    pub(super) fn loads(&self) -> usize {
+        self.loads
+    }
+
+    /// Returns whether there are none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Returns the mode of each force, and the value at which its coordinate is held.
+    pub(super) fn state(&self) -> impl Iterator<Item = (Mode, f64)> {
+        let modes = self.modes.iter().zip(&self.anchors);
+        modes.map(|(mode, anchor)| (*mode, *anchor))
+    }
+
+    /// Goes on from a state.
+    pub(super) fn resume(&mut self, state: &[(Mode, f64)]) {
+        let own = self.modes.iter_mut().zip(&mut self.anchors);
+        for ((mode, anchor), state) in own.zip(state) {
+            (*mode, *anchor) = *state;
+        }
+    }
+
+    /// Returns whether some coordinate is held.
+    pub(super) fn holds(&self) -> bool {
+        (0..self.list.len()).any(|k| self.is_held(k))
+    }
+
+    /// Returns whether a coordinate is held.
+    pub(super) fn is_held(&self, force: usize) -> bool {
+        match self.modes[force] {
+            Mode::AtMin | Mode::AtMax => matches!(self.list[force].cause, Cause::Stop(_)),
+            mode => mode == Mode::Sticking,
+        }
+    }
+
+    /// Reads coordinates and their partial derivatives at the solver's pose, and adds the friction that
+    /// slides to the equations of motion, which are those of the pose.
+    pub(super) fn begin(
+        &mut self,
+        solver: &Solver,
+        motion: &mut EquationsOfMotion,
+        point: &mut [Passive],
+    ) {
+        let parameters = &solver.pose().parameters;
+        let value = |id: ParameterId| parameters[id.index()];
+        for (k, (passive, to)) in self.list.iter().zip(point).enumerate() {
+            let relation = &*passive.relation;
+            to.coordinate = solver.coordinate(relation, motion.coasting());
+            for driver in 0..self.rows.ncols() {
+                let unit = motion.unit(DriverId(driver));
+                self.rows[(k, driver)] = solver.coordinate(relation, unit).first();
+            }
+            let scale = if passive.is_angle { 1.0 } else { solver.size() };
+            to.rounding = ROUNDINGS * scale.max(to.coordinate.value.abs());
+            to.force = 0.0;
+            let rate = to.coordinate.first();
+            match &passive.cause {
+                Cause::Stop(stop) => to.bounds = solver.mechanism().stops[*stop].limits(parameters),
+                Cause::Friction(law) => {
+                    let limit = law.sticking(&value);
+                    to.bounds = [-limit, limit];
+                    let sign = self.modes[k].sign();
+                    if sign != 0.0 {
+                        to.force = -sign * law.sliding(&value, sign * rate);
+                        motion.exert(self.rows.row(k).iter().copied(), to.force, rate);
+                    }
+                }
+                Cause::Elastic(stop) => {
+                    let limit = |limit: &Option<Expression>, none: f64| {
+                        limit.as_ref().map_or(none, |limit| limit.value(parameters))
+                    };
+                    let [least, most] = &stop.limits;
+                    to.bounds = [limit(least, f64::NEG_INFINITY), limit(most, f64::INFINITY)];
+                    let push = stop.push(&value, [to.coordinate.value, rate]);
+                    to.force = push.map_or(0.0, |(push, sign)| push * sign);
+                }
+            }
+        }
+    }
+
+    /// Prepares the forces that hold, for L of J = L Lᵀ.
+    pub(super) fn prepare(&mut self, freedoms: &[DriverId], lower: &DMatrix<f64>) {
+        self.holding.clear();
+        for k in 0..self.list.len() {
+            if self.is_held(k) {
+                self.holding.push(k);
+            }
+        }
+        for column in 0..self.holding.len() {
+            let row = (&self.rows, self.holding[column]);
+            let mut to = self.columns.column_mut(column);
+            write_column(row, freedoms, lower, to.as_mut_slice());
+        }
+        let count = self.holding.len();
+        for i in 0..count {
+            for j in 0..=i {
+                self.factor[(i, j)] = self.columns.column(i).dot(&self.columns.column(j));
+            }
+        }
+        factorise(&mut self.factor, count);
+    }
+
+    /// Adds the accelerations of the drivers to those of coordinates.
+    pub(super) fn accelerate(
+        &self,
+        at: &mut [Passive],
+        accelerations: impl Iterator<Item = f64> + Clone,
+    ) {
+        for (k, at) in at.iter_mut().enumerate() {
+            let parts = self.rows.row(k).into_iter().zip(accelerations.clone());
+            let sum: f64 = parts.map(|(partial, second)| partial * second).sum();
+            at.coordinate.derivatives[1] += sum;
+        }
+    }
+
+    /// Adds changes of the freedoms' accelerations to those of coordinates; those that are held have
+    /// none.
+    pub(super) fn accelerate_freedoms(
+        &self,
+        at: &mut [Passive],
+        freedoms: &[DriverId],
+        changes: &[f64],
+    ) {
+        for (k, at) in at.iter_mut().enumerate() {
+            let second = &mut at.coordinate.derivatives[1];
+            if self.is_held(k) {
+                *second = 0.0;
+                continue;
+            }
+            for (freedom, change) in freedoms.iter().zip(changes) {
+                *second += self.rows[(k, freedom.index())] * change;
+            }
+        }
+    }
+
+    /// Writes the forces that hold, and adds them to the equations of motion.
+    pub(super) fn exert(&self, at: &mut [Passive], motion: &mut EquationsOfMotion) {
+        for (&k, &force) in self.holding.iter().zip(&self.forces) {
+            at[k].force = force;
+            let rate = at[k].coordinate.first();
+            motion.exert(self.rows.row(k).iter().copied(), force, rate);
+        }
+    }
+
+    /// Finds the forces or impulses that change the held coordinates by `wanted`, and adds the changes
+    /// of the freedoms that they make to `changes`, before [`ascend`].
+    pub(super) fn correct(&mut self, wanted: impl Fn(usize) -> f64, changes: &mut [f64]) {
+        let count = self.holding.len();
+        let forces = &mut self.forces[..count];
+        for (force, k) in forces.iter_mut().zip(&self.holding) {
+            *force = wanted(*k);
+        }
+        descend(&self.factor, forces);
+        ascend(&self.factor, forces);
+        for (column, force) in forces.iter().enumerate() {
+            let column = self.columns.column(column);
+            for (change, entry) in changes.iter_mut().zip(&column) {
+                *change += entry * *force;
+            }
+        }
+    }
+
+    /// Returns the changes of all coordinates along a direction, and writes those of forces that slide.
+    pub(super) fn changes(
+        &self,
+        sensitivity: &Sensitivity<'_>,
+        at: &[Passive],
+        changes: &mut [f64],
+    ) -> Vec<Jet> {
+        let parameter = |id: ParameterId| sensitivity.parameter_value(id);
+        let passive = self.list.iter().zip(at).zip(&self.modes).zip(changes);
+        let coordinates = passive.map(|(((passive, at), mode), change)| {
+            let coordinate = sensitivity.coordinate(&*passive.relation);
+            let sign = mode.sign();
+            *change = match &passive.cause {
+                Cause::Friction(law) if sign != 0.0 => {
+                    let speed = [sign * at.coordinate.first(), sign * coordinate.first()];
+                    let sliding = law.sliding(&parameter, Dual::new(speed[0], [speed[1]]));
+                    -sign * sliding.first()
+                }
+                _ => 0.0,
+            };
+            coordinate
+        });
+        coordinates.collect()
+    }
+
+    /// Finds the changes of the forces that hold, so that held coordinates do not accelerate, where
+    /// these accelerate as `coordinates` without the changes of the freedoms, L⁻¹ δQ, in `changes`;
+    /// completes those.
+    pub(super) fn hold_changes(
+        &mut self,
+        coordinates: &[Jet],
+        changes: &mut [f64],
+        forces: &mut [f64],
+    ) {
+        if !self.holds() {
+            return;
+        }
+        let columns = self.holding.iter().enumerate();
+        let mut wanted = vec![0.0; self.list.len()];
+        for (column, &k) in columns {
+            let of_freedoms = self.columns.column(column);
+            let of_freedoms = of_freedoms.iter().zip(&*changes).map(|(c, x)| c * x);
+            wanted[k] = -coordinates[k].second() - of_freedoms.sum::<f64>();
+        }
+        self.correct(|k| wanted[k], changes);
+        for (&k, &force) in self.holding.iter().zip(&self.forces) {
+            forces[k] = force;
+        }
+    }
+
+    /// Returns L⁻¹ (∂c/∂u)ᵀ of some forces, by columns, for L of J = L Lᵀ.
+    pub(super) fn columns(
+        &self,
+        some: &[usize],
+        freedoms: &[DriverId],
+        lower: &DMatrix<f64>,
+    ) -> DMatrix<f64> {
+        let mut columns = DMatrix::zeros(freedoms.len(), some.len());
+        for (column, &k) in some.iter().enumerate() {
+            let mut to = columns.column_mut(column);
+            write_column((&self.rows, k), freedoms, lower, to.as_mut_slice());
+        }
+        columns
+    }
+}
+
+/// Writes L⁻¹ (∂c/∂u)ᵀ of a row, which has a column per driver.
+fn write_column(
+    (rows, row): (&DMatrix<f64>, usize),
+    freedoms: &[DriverId],
+    lower: &DMatrix<f64>,
+    to: &mut [f64],
+) {
+    for (entry, freedom) in to.iter_mut().zip(freedoms) {
+        *entry = rows[(row, freedom.index())];
+    }
+    descend(lower, to);
+}

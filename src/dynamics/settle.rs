@@ -1,0 +1,491 @@
+//! Events: impacts, and the modes of passive forces after them.
+
+use nalgebra::DMatrix;
+
+use super::bounded;
+use super::equations::Equations;
+use super::error::Error;
+use super::given::Given;
+use super::passive::{Cause, Mode};
+use super::triangular::ascend;
+use crate::kinematics::{Solver, StopLimit};
+use crate::mechanism::{Force, Load, Mechanism, fixed, shown};
+
+/// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
+const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
+/// Height from which a fall ends at rest, in the same unit: below that of all bounces.
+const LOWEST_FALL: f64 = 1.0 / 64.0;
+/// Impacts at one instant, far more than several contacts make.
+const MOST_IMPACTS: usize = 100;
+/// A speed of so many roundings may be rest: 1e-8 radians or sizes of the mechanism per second. The
+/// instant of an event is not known much better.
+const SLOW: f64 = 1e6;
+/// Corrections of held coordinates: two suffice, since they are nearly linear over a step.
+const MOST_CORRECTIONS: usize = 5;
+
+/// An event of a free motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Time \[s\].
+    pub time: f64,
+    /// Index of the force of the stop or of friction in the mechanism.
+    pub force: usize,
+    /// Its kind.
+    pub kind: EventKind,
+}
+
+/// Kinds of events.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EventKind {
+    /// A coordinate meets a stop.
+    Impact {
+        /// Speed before \[m/s or rad/s\].
+        speed: f64,
+    },
+    /// A coordinate comes to rest at a stop: after the last bounce, if it bounces.
+    Rests,
+    /// A coordinate leaves a stop at which it rested.
+    Leaves,
+    /// Friction begins to stick.
+    Sticks,
+    /// Friction ceases to stick.
+    Slides,
+}
+
+impl Event {
+    /// Describes the event, with its time.
+    #[must_use]
+    pub fn describe(&self, mechanism: &Mechanism) -> String {
+        let Force { name, load, .. } = &mechanism.forces[self.force];
+        let (Load::Passive { coordinate, .. } | Load::Coordinate { coordinate, .. }) = load else {
+            unreachable!("events are those of passive forces");
+        };
+        let happens = match self.kind {
+            EventKind::Impact { speed } => {
+                let unit = coordinate.kind.units()[1].suffix();
+                format!("impact at stop `{name}` with {}{unit}", shown(speed))
+            }
+            EventKind::Rests => format!("rest at stop `{name}`"),
+            EventKind::Leaves => format!("stop `{name}` is left"),
+            EventKind::Sticks => format!("friction `{name}` sticks"),
+            EventKind::Slides => format!("friction `{name}` slides"),
+        };
+        format!("t = {} s: {happens}", fixed(self.time, 9))
+    }
+}
+
+/// A stop that something touches, on one side.
+#[derive(Clone, Copy, Debug)]
+struct Contact {
+    /// Index of the passive force.
+    force: usize,
+    mode: Mode,
+}
+
+/// A contact at an impact.
+struct Hit {
+    contact: Contact,
+    /// Speed before \[m/s or rad/s\].
+    speed: f64,
+    restitution: f64,
+}
+
+impl Equations {
+    /// Moves held coordinates to where they are held, and lets them rest, by the least changes of the
+    /// freedoms in the metric of their inertia.
+    pub(super) fn project(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+        x: &mut [f64],
+    ) -> Result<(), Error> {
+        if !self.passive.holds() {
+            return Ok(());
+        }
+        self.project_places(solver, given, time, x)?;
+        let rates: Vec<f64> = (self.point.passive.iter())
+            .map(|at| -at.coordinate.first())
+            .collect();
+        let count = self.freedoms.len();
+        self.correct(|k| rates[k], &mut x[count..2 * count]);
+        Ok(())
+    }
+
+    /// Moves held coordinates to where they are held.
+    fn project_places(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+        x: &mut [f64],
+    ) -> Result<(), Error> {
+        let count = self.freedoms.len();
+        for _ in 0..MOST_CORRECTIONS {
+            self.evaluate(solver, given, time, x)?;
+            let Self { passive, point, .. } = self;
+            let off = |k: usize| passive.anchors[k] - point.passive[k].coordinate.value;
+            let mut held = (0..point.passive.len()).filter(|&k| passive.is_held(k));
+            if held.all(|k| off(k).abs() <= 0.1 * point.passive[k].rounding) {
+                break;
+            }
+            let off: Vec<f64> = (0..point.passive.len()).map(off).collect();
+            self.correct(|k| off[k], &mut x[..count]);
+        }
+        Ok(())
+    }
+
+    /// Moves coordinates that are beyond a rigid stop back to it, by no more than an instant is known.
+    fn push_out(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+        x: &mut [f64],
+    ) -> Result<(), Error> {
+        for Contact { force, mode } in self.contacts() {
+            let at = &self.point.passive[force];
+            let limit = at.bounds[usize::from(mode == Mode::AtMax)];
+            if mode.sign() * (at.coordinate.value - limit) < 0.0 {
+                self.passive.modes[force] = mode;
+                self.passive.anchors[force] = limit;
+            }
+        }
+        if self.passive.holds() {
+            self.project_places(solver, given, time, x)?;
+            self.release();
+            self.evaluate(solver, given, time, x)?;
+        }
+        Ok(())
+    }
+
+    /// Changes values or velocities of the freedoms so that held coordinates change by `wanted`.
+    fn correct(&mut self, wanted: impl Fn(usize) -> f64, x: &mut [f64]) {
+        let mut changes = vec![0.0; x.len()];
+        self.passive.correct(wanted, &mut changes);
+        ascend(self.factor(), &mut changes);
+        for (x, change) in x.iter_mut().zip(changes) {
+            *x += change;
+        }
+    }
+
+    /// Decides the modes of all passive forces at the solver's pose: lets contacts bounce or rest, and
+    /// friction stick or slide. Changes values and velocities in `x`; the equations have to be evaluated
+    /// again.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Stop`] at a stop of a coordinate that no freedom moves.
+    pub(super) fn settle(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        x: &mut [f64],
+        events: &mut Vec<Event>,
+    ) -> Result<(), Error> {
+        if self.passive.is_empty() {
+            return Ok(());
+        }
+        let time = solver.pose().time;
+        self.watch.begin();
+        let before = self.passive.modes.clone();
+        self.evaluate(solver, given, time, x)?;
+        self.release();
+        self.evaluate(solver, given, time, x)?;
+        self.push_out(solver, given, time, x)?;
+        let rest = self.bounce(solver, given, time, x, events)?;
+        // Friction sticks, or turns, where an impact has changed the velocity.
+        self.release();
+        self.evaluate(solver, given, time, x)?;
+        self.choose(solver, given, time, x, &before)?;
+        self.project(solver, given, time, x)?;
+        for (k, before) in before.into_iter().enumerate() {
+            let after = self.passive.modes[k];
+            let kind = match (before, after) {
+                _ if before == after => continue,
+                (Mode::LooseAtMin | Mode::LooseAtMax, Mode::AtMin | Mode::AtMax)
+                | (_, Mode::LooseAtMin | Mode::LooseAtMax) => continue,
+                (_, Mode::AtMin | Mode::AtMax) if !self.passive.is_held(k) => EventKind::Impact {
+                    speed: self.point.passive[k].coordinate.first().abs(),
+                },
+                (_, Mode::AtMin | Mode::AtMax) => EventKind::Rests,
+                (Mode::AtMin | Mode::AtMax | Mode::LooseAtMin | Mode::LooseAtMax, _) => {
+                    EventKind::Leaves
+                }
+                (_, Mode::Sticking) => EventKind::Sticks,
+                (Mode::Sticking, _) => EventKind::Slides,
+                _ => continue,
+            };
+            let later = if kind == EventKind::Rests {
+                rest[k]
+            } else {
+                0.0
+            };
+            events.push(Event {
+                time: time + later,
+                force: self.passive.list[k].index,
+                kind,
+            });
+        }
+        Ok(())
+    }
+
+    /// Opens all contacts, and leaves friction undecided where its coordinate rests; elsewhere it slides
+    /// as the coordinate does.
+    fn release(&mut self) {
+        let Self { passive, point, .. } = self;
+        for (k, at) in point.passive.iter().enumerate() {
+            let rate = at.coordinate.first();
+            let rests = rate.abs() <= SLOW * at.rounding;
+            passive.modes[k] = match passive.list[k].cause {
+                Cause::Elastic(_) => at.elastic_mode(),
+                Cause::Friction(_) if !rests && rate > 0.0 => Mode::Growing,
+                Cause::Friction(_) if !rests => Mode::Falling,
+                _ => Mode::Free,
+            };
+        }
+    }
+
+    /// Returns the contacts at the present point.
+    fn contacts(&self) -> Vec<Contact> {
+        let passive = self.point.passive.iter().enumerate();
+        let sides = passive.flat_map(|(force, at)| {
+            let value = at.coordinate.value;
+            let [least, most] = at.bounds;
+            let is_stop = matches!(self.passive.list[force].cause, Cause::Stop(_));
+            let sides = [(Mode::AtMin, value - least), (Mode::AtMax, most - value)];
+            let near = sides
+                .into_iter()
+                .filter(move |(_, gap)| is_stop && *gap <= 4.0 * at.rounding);
+            near.map(move |(mode, _)| Contact { force, mode })
+        });
+        sides.collect()
+    }
+
+    /// Returns the speed at which a contact opens, negative where it closes, and the acceleration.
+    fn opening(&self, Contact { force, mode }: Contact) -> [f64; 2] {
+        let rates = self.point.passive[force].coordinate.derivatives;
+        rates.map(|rate| mode.sign() * rate)
+    }
+
+    /// Returns the speed of a contact that counts as rest: that of the lowest fall.
+    fn resting_speed(&self, contact: Contact) -> f64 {
+        let rounding = self.point.passive[contact.force].rounding;
+        let [_, acceleration] = self.opening(contact);
+        rounding + (2.0 * LOWEST_FALL * rounding * (-acceleration).max(0.0)).sqrt()
+    }
+
+    /// Lets all contacts that close bounce. Returns how long each passive force goes on bouncing beneath
+    /// rounding.
+    fn bounce(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+        x: &mut [f64],
+        events: &mut Vec<Event>,
+    ) -> Result<Vec<f64>, Error> {
+        let mut rest = vec![0.0; self.passive.list.len()];
+        let mut is_tired = vec![false; rest.len()];
+        for _ in 0..MOST_IMPACTS {
+            let contacts = self.contacts();
+            let closes =
+                |contact: &Contact| self.opening(*contact)[0] < -self.resting_speed(*contact);
+            if !contacts.iter().any(closes) {
+                return Ok(rest);
+            }
+            let hits: Vec<Hit> = contacts
+                .iter()
+                .map(|&contact| Hit {
+                    contact,
+                    speed: -self.opening(contact)[0],
+                    restitution: match self.passive.list[contact.force].cause {
+                        Cause::Stop(stop) if closes(&contact) && !is_tired[contact.force] => {
+                            solver.mechanism().stops[stop].restitution(&solver.pose().parameters)
+                        }
+                        _ => 0.0,
+                    },
+                })
+                .collect();
+            let start = x.to_vec();
+            let energy = self.point.energy;
+            let mut impulses = self.strike(solver, &hits, x)?;
+            self.evaluate(solver, given, time, x)?;
+            if self.point.energy > energy {
+                // Contacts of different restitution may gain energy from each other.
+                let least = hits.iter().map(|hit| hit.restitution).fold(1.0, f64::min);
+                let hits: Vec<Hit> = hits
+                    .iter()
+                    .map(|hit| Hit {
+                        restitution: least.min(hit.restitution),
+                        ..*hit
+                    })
+                    .collect();
+                x.copy_from_slice(&start);
+                impulses = self.strike(solver, &hits, x)?;
+                self.evaluate(solver, given, time, x)?;
+            }
+            let mut tires = false;
+            for hit in hits.iter().filter(|hit| hit.restitution > 0.0) {
+                let force = hit.contact.force;
+                let [speed, acceleration] = self.opening(hit.contact);
+                let lowest = LOWEST_BOUNCE * self.point.passive[force].rounding;
+                if acceleration < 0.0 && speed * speed <= -2.0 * acceleration * lowest {
+                    // Each bounce lasts 2 v / a, and the next one is slower by the restitution.
+                    rest[force] = -2.0 * speed / acceleration / (1.0 - hit.restitution);
+                    is_tired[force] = true;
+                    tires = true;
+                }
+            }
+            if tires {
+                x.copy_from_slice(&start);
+                self.evaluate(solver, given, time, x)?;
+                continue;
+            }
+            x[2 * self.freedoms.len()] += self.point.energy - energy;
+            let struck = hits.iter().zip(&impulses).filter(|(hit, impulse)| {
+                **impulse > 0.0 && hit.speed > 0.0 && !is_tired[hit.contact.force]
+            });
+            events.extend(struck.map(|(hit, _)| Event {
+                time,
+                force: self.passive.list[hit.contact.force].index,
+                kind: EventKind::Impact { speed: hit.speed },
+            }));
+        }
+        let why = "impacts at one instant come to no end";
+        Err(Error::Integrator(format!("t = {time} s: {why}")))
+    }
+
+    /// Changes the velocities in `x` by the impulses of contacts (Newton's law of restitution), and
+    /// returns the impulses.
+    fn strike(&self, solver: &Solver, hits: &[Hit], x: &mut [f64]) -> Result<Vec<f64>, Error> {
+        let count = self.freedoms.len();
+        let columns = self.signed_columns(hits.iter().map(|hit| hit.contact));
+        let compliance = columns.transpose() * &columns;
+        let rates: Vec<f64> = hits
+            .iter()
+            .map(|hit| -hit.speed * (1.0 + hit.restitution))
+            .collect();
+        for (k, hit) in hits.iter().enumerate() {
+            if compliance[(k, k)] == 0.0 && rates[k] < 0.0 {
+                return Err(self.stop(solver, hit.contact));
+            }
+        }
+        let pushes = vec![[0.0, f64::INFINITY]; hits.len()];
+        let impulses = bounded::solve(&compliance, &rates, &pushes);
+        let mut changes = &columns * &impulses;
+        ascend(self.factor(), changes.as_mut_slice());
+        for (x, change) in x[count..2 * count].iter_mut().zip(&changes) {
+            *x += change;
+        }
+        Ok(impulses.as_slice().to_vec())
+    }
+
+    /// Returns the error at a stop of a coordinate that no freedom moves.
+    fn stop(&self, solver: &Solver, Contact { force, mode }: Contact) -> Error {
+        let Cause::Stop(stop) = self.passive.list[force].cause else {
+            unreachable!("contacts are those of stops");
+        };
+        let stop = &solver.mechanism().stops[stop];
+        let is_max = mode == Mode::AtMax;
+        let value = self.point.passive[force].bounds[usize::from(is_max)];
+        Error::Stop {
+            limit: Box::new(StopLimit::new(stop, is_max, value)),
+            time: solver.pose().time,
+        }
+    }
+
+    /// Returns L⁻¹ (∂c/∂u)ᵀ of contacts by columns, with c the way by which each opens.
+    fn signed_columns(&self, contacts: impl Iterator<Item = Contact> + Clone) -> DMatrix<f64> {
+        let some: Vec<usize> = contacts.clone().map(|contact| contact.force).collect();
+        let mut columns = self.passive.columns(&some, &self.freedoms, self.factor());
+        for (mut column, contact) in columns.column_iter_mut().zip(contacts) {
+            column *= contact.mode.sign();
+        }
+        columns
+    }
+
+    /// Chooses which contacts stay closed and which friction sticks, by the accelerations.
+    fn choose(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+        x: &[f64],
+        before: &[Mode],
+    ) -> Result<(), Error> {
+        loop {
+            let contacts: Vec<Contact> = self
+                .contacts()
+                .into_iter()
+                .filter(|contact| self.opening(*contact)[0] <= self.resting_speed(*contact))
+                .collect();
+            let undecided = |k: &usize| {
+                let is_friction = matches!(self.passive.list[*k].cause, Cause::Friction(_));
+                is_friction && self.passive.modes[*k] == Mode::Free
+            };
+            let frictions: Vec<usize> = (0..before.len()).filter(undecided).collect();
+            let frictions_as_contacts = frictions.iter().map(|&force| Contact {
+                force,
+                mode: Mode::AtMin,
+            });
+            let all: Vec<Contact> = contacts
+                .iter()
+                .copied()
+                .chain(frictions_as_contacts)
+                .collect();
+            let columns = self.signed_columns(all.iter().copied());
+            let compliance = columns.transpose() * &columns;
+            let accelerations: Vec<f64> = all.iter().map(|c| self.opening(*c)[1]).collect();
+            let bounds: Vec<[f64; 2]> = all
+                .iter()
+                .enumerate()
+                .map(|(k, contact)| match k < contacts.len() {
+                    true => [0.0, f64::INFINITY],
+                    false => self.point.passive[contact.force].bounds,
+                })
+                .collect();
+            for (k, &contact) in contacts.iter().enumerate() {
+                if compliance[(k, k)] == 0.0 && accelerations[k] < 0.0 {
+                    return Err(self.stop(solver, contact));
+                }
+            }
+            let forces = bounded::solve(&compliance, &accelerations, &bounds);
+            let (of_contacts, of_frictions) = forces.as_slice().split_at(contacts.len());
+            let mut slides = false;
+            for (&k, &force) in frictions.iter().zip(of_frictions) {
+                let at = &self.point.passive[k];
+                let [low, high] = at.bounds;
+                if low < force && force < high {
+                    continue;
+                }
+                // At its limit friction pushes against the motion that begins.
+                let grows = match low < high {
+                    true => force == low,
+                    false => at.coordinate.second() > 0.0,
+                };
+                self.passive.modes[k] = if grows { Mode::Growing } else { Mode::Falling };
+                slides = true;
+            }
+            if slides {
+                self.evaluate(solver, given, time, x)?;
+                continue;
+            }
+            for (contact, &force) in contacts.iter().zip(of_contacts) {
+                if force > 0.0 {
+                    let side = usize::from(contact.mode == Mode::AtMax);
+                    self.passive.modes[contact.force] = contact.mode;
+                    self.passive.anchors[contact.force] =
+                        self.point.passive[contact.force].bounds[side];
+                }
+            }
+            for k in frictions {
+                self.passive.modes[k] = Mode::Sticking;
+                if before[k] != Mode::Sticking {
+                    self.passive.anchors[k] = self.point.passive[k].coordinate.value;
+                }
+            }
+            return Ok(());
+        }
+    }
+}
