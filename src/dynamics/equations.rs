@@ -191,7 +191,7 @@ impl Equations {
         let mut coordinates = Vec::new();
         if !passive.is_empty() {
             let sensitivity = solver.sensitivity(rates, &point.drivers, direction)?;
-            coordinates = passive.changes(&sensitivity, &point.passive, &mut loads[of_passive..]);
+            coordinates = passive.changes(&sensitivity, &mut loads[of_passive..]);
         }
         let motion = KnownMotion {
             rates,
@@ -475,6 +475,7 @@ impl Equations {
             forces,
             motion,
             passive,
+            freedoms,
             ..
         } = self;
         let Point {
@@ -488,7 +489,7 @@ impl Equations {
         let velocity = |driver: DriverId| drivers[driver.index()].first();
         solver.write_equations(velocity, loads, forces, motion)?;
         *energy = motion.energy;
-        passive.begin(solver, motion, at);
+        passive.begin(solver, freedoms, motion, at);
         self.solve_accelerations(solver)?;
         self.hold();
         Ok(())

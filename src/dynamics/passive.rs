@@ -11,8 +11,7 @@ use super::triangular::{ascend, descend, factorise};
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::{EquationsOfMotion, Sensitivity, Solver};
 use crate::mechanism::{
-    DriverId, Dual, ElasticStop, Expression, FrictionLaw, Jet, Load, Mechanism, ParameterId,
-    PassiveCause,
+    DriverId, ElasticStop, Expression, FrictionLaw, Jet, Load, Mechanism, ParameterId, PassiveCause,
 };
 
 /// Gap and speed up to which a coordinate is at a stop and at rest, in radians or sizes of the
@@ -119,6 +118,8 @@ pub(super) struct PassiveForces {
     pub(super) list: Vec<PassiveForce>,
     loads: usize,
     pub(super) modes: Vec<Mode>,
+    /// Whether drivers alone move the coordinate of friction.
+    pub(super) is_driven: Vec<bool>,
     /// The values at which coordinates are held.
     pub(super) anchors: Vec<f64>,
     /// ∂c/∂u: a row per force, a column per driver.
@@ -182,6 +183,7 @@ impl PassiveForces {
         let (count, drivers) = (list.len(), mechanism.drivers.len());
         Self {
             modes: vec![Mode::Free; count],
+            is_driven: vec![false; count],
             anchors: vec![0.0; count],
             rows: DMatrix::zeros(count, drivers),
             holding: Vec::with_capacity(count),
@@ -240,6 +242,7 @@ impl PassiveForces {
     pub(super) fn begin(
         &mut self,
         solver: &Solver,
+        freedoms: &[DriverId],
         motion: &mut EquationsOfMotion,
         point: &mut [Passive],
     ) {
@@ -262,8 +265,13 @@ impl PassiveForces {
                     let limit = law.sticking(&value);
                     to.bounds = [-limit, limit];
                     let sign = self.modes[k].sign();
-                    if sign != 0.0 {
-                        to.force = -sign * law.sliding(&value, sign * rate);
+                    // A coordinate that is driven slides as the drivers have it.
+                    self.is_driven[k] = freedoms.iter().all(|id| self.rows[(k, id.index())] == 0.0);
+                    if sign != 0.0 || self.is_driven[k] {
+                        to.force = match self.is_driven[k] {
+                            true => law.along(&value, rate),
+                            false => -sign * law.sliding(&value, sign * rate),
+                        };
                         motion.exert(self.rows.row(k).iter().copied(), to.force, rate);
                     }
                 }
@@ -363,22 +371,20 @@ impl PassiveForces {
     }
 
     /// Returns the changes of all coordinates along a direction, and writes those of forces that slide.
-    pub(super) fn changes(
-        &self,
-        sensitivity: &Sensitivity<'_>,
-        at: &[Passive],
-        changes: &mut [f64],
-    ) -> Vec<Jet> {
+    pub(super) fn changes(&self, sensitivity: &Sensitivity<'_>, changes: &mut [f64]) -> Vec<Jet> {
         let parameter = |id: ParameterId| sensitivity.parameter_value(id);
-        let passive = self.list.iter().zip(at).zip(&self.modes).zip(changes);
-        let coordinates = passive.map(|(((passive, at), mode), change)| {
+        let modes = self.modes.iter().zip(&self.is_driven);
+        let passive = self.list.iter().zip(modes).zip(changes);
+        let coordinates = passive.map(|((passive, (mode, &is_driven)), change)| {
             let coordinate = sensitivity.coordinate(&*passive.relation);
             let sign = mode.sign();
             *change = match &passive.cause {
+                Cause::Friction(law) if is_driven => law
+                    .along(&parameter, sensitivity.rate(&*passive.relation))
+                    .first(),
                 Cause::Friction(law) if sign != 0.0 => {
-                    let speed = [sign * at.coordinate.first(), sign * coordinate.first()];
-                    let sliding = law.sliding(&parameter, Dual::new(speed[0], [speed[1]]));
-                    -sign * sliding.first()
+                    let rate = sensitivity.rate(&*passive.relation);
+                    -sign * law.sliding(&parameter, rate * sign).first()
                 }
                 _ => 0.0,
             };

@@ -239,6 +239,7 @@ impl Equations {
             let rests = rate.abs() <= SLOW * at.rounding;
             passive.modes[k] = match passive.list[k].cause {
                 Cause::Elastic(_) => at.elastic_mode(),
+                Cause::Friction(_) if passive.is_driven[k] => Mode::Free,
                 Cause::Friction(_) if !rests && rate > 0.0 => Mode::Growing,
                 Cause::Friction(_) if !rests => Mode::Falling,
                 _ => Mode::Free,
@@ -422,7 +423,8 @@ impl Equations {
                 .collect();
             let undecided = |k: &usize| {
                 let is_friction = matches!(self.passive.list[*k].cause, Cause::Friction(_));
-                is_friction && self.passive.modes[*k] == Mode::Free
+                let is_driven = self.passive.is_driven[*k];
+                is_friction && !is_driven && self.passive.modes[*k] == Mode::Free
             };
             let frictions: Vec<usize> = (0..before.len()).filter(undecided).collect();
             let frictions_as_contacts = frictions.iter().map(|&force| Contact {

@@ -23,6 +23,16 @@ impl FrictionLaw {
         self.dry(parameter, speed) + self.viscous(parameter) * speed
     }
 
+    /// Returns the force along a coordinate that slides at this rate; none where it rests.
+    pub fn along<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N) -> N {
+        let real = rate.real();
+        if real == 0.0 {
+            return N::constant(0.0);
+        }
+        let sign = real.signum();
+        -(self.sliding(parameter, rate * sign) * sign)
+    }
+
     /// Returns the part of the force that does not grow with the rate of the coordinate:
     /// C + (S − C) exp(−(ċ / v)²), with C of Coulomb, S of sticking and v of Stribeck.
     pub fn dry<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N) -> N {

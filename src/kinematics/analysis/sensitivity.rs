@@ -86,6 +86,11 @@ impl Sensitivity<'_> {
         change_of(relation.along(&self.mechanism()))
     }
 
+    /// Returns the rate of a coordinate with its change.
+    pub(crate) fn rate(&self, relation: &dyn Constraint) -> Dual {
+        relation.along(&self.mechanism()).first()
+    }
+
     /// Returns the mechanism along the direction.
     pub(in crate::kinematics) fn mechanism(&self) -> VariedMechanism<'_, '_> {
         VariedMechanism {

@@ -2,13 +2,16 @@
 
 use super::output::Output;
 use crate::kinematics::analysis::Direction;
+use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::kinematics::forces::{
     ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff,
 };
 use crate::kinematics::path::Rates;
 use crate::kinematics::solver::Solver;
-use crate::mechanism::{DerivedMeasure, DriverId, Jet};
+use crate::mechanism::{
+    DerivedMeasure, DriverId, FrictionLaw, Jet, Load, Mechanism, ParameterId, PassiveCause,
+};
 
 /// The rates at the pose of a [`Solver`] and, where they are [sought](Self::seek_forces), the
 /// forces.
@@ -58,6 +61,8 @@ pub struct Solution {
     parts: ForceParts,
     /// Whether each contact pulls.
     lifted: Vec<bool>,
+    /// Friction of a mechanism without freedoms, by its load; with freedoms their motion tells the loads.
+    frictions: Vec<(usize, Box<dyn Constraint>, FrictionLaw)>,
 }
 
 impl Solution {
@@ -72,6 +77,7 @@ impl Solution {
             forces: None,
             parts: ForceParts::ALL,
             lifted: Vec::new(),
+            frictions: Vec::new(),
         }
     }
 
@@ -81,6 +87,7 @@ impl Solution {
         self.loads = vec![0.0; forces.loads()];
         self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
+        self.frictions = frictions(solver.mechanism());
         let outputs = &solver.mechanism().outputs;
         let mut measures = solver.mechanism().derived.iter();
         if outputs.joints.is_empty()
@@ -143,6 +150,11 @@ impl Solution {
     ///
     /// Those of [`Solver::solve_forces`].
     pub fn solve_forces(&mut self, solver: &mut Solver, parts: ForceParts) -> Result<(), Error> {
+        let parameters = &solver.pose().parameters;
+        for (load, relation, law) in &self.frictions {
+            let rate = solver.coordinate(&**relation, &self.rates).first();
+            self.loads[*load] = law.along(&|id: ParameterId| parameters[id.index()], rate);
+        }
         match self.split() {
             (motion, Some(forces)) => solver.solve_forces(motion, parts, forces),
             (_, None) => Ok(()),
@@ -184,8 +196,8 @@ impl Solution {
         changes.collect()
     }
 
-    /// Returns the changes of forces along a direction, along which the loads change by `loads`;
-    /// `None` unless forces are sought.
+    /// Returns the changes of forces along a direction, along which the loads change by `loads`, without
+    /// freedoms those of friction by themselves; `None` unless forces are sought.
     ///
     /// # Errors
     ///
@@ -196,9 +208,18 @@ impl Solution {
         direction: &Direction,
         loads: &[f64],
     ) -> Result<Option<ForceSensitivity>, Error> {
+        let mut loads = loads.to_vec();
+        if !self.frictions.is_empty() {
+            let along = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
+            for (load, relation, law) in &self.frictions {
+                let rate = along.rate(&**relation);
+                let force = law.along(&|id: ParameterId| along.parameter_value(id), rate);
+                loads[*load] = force.first();
+            }
+        }
         match self.split() {
             (motion, Some(forces)) => solver
-                .force_sensitivity(motion, direction, loads, forces)
+                .force_sensitivity(motion, direction, &loads, forces)
                 .map(Some),
             (_, None) => Ok(None),
         }
@@ -237,4 +258,26 @@ impl Solution {
         };
         (motion, self.forces.as_mut())
     }
+}
+
+/// Returns the friction of a mechanism without freedoms, by the places of its loads.
+fn frictions(mechanism: &Mechanism) -> Vec<(usize, Box<dyn Constraint>, FrictionLaw)> {
+    if mechanism.has_freedoms() {
+        return Vec::new();
+    }
+    let loads = mechanism.force_inputs().len()..;
+    let passive = mechanism
+        .forces
+        .iter()
+        .filter_map(|force| match &force.load {
+            Load::Passive {
+                coordinate,
+                cause: PassiveCause::Friction(law),
+            } => Some((coordinate, law)),
+            _ => None,
+        });
+    let frictions = loads.zip(passive);
+    let frictions =
+        frictions.map(|(load, (coordinate, law))| (load, of_coordinate(coordinate), law.clone()));
+    frictions.collect()
 }

@@ -6,6 +6,7 @@ mod cases;
 mod change_points;
 mod energy;
 mod fmu;
+mod friction;
 mod invariance;
 mod loaded;
 mod published;
