@@ -4,7 +4,7 @@ use super::conditions::unknown;
 use super::error::Error;
 use crate::kinematics::ForceQuantity;
 pub(super) use crate::kinematics::{Output, OutputSource as Source};
-use crate::mechanism::{BodyId, MarkerId, Mechanism, Order, Signal, help};
+use crate::mechanism::{BodyId, MarkerId, Mechanism, Order, Signal, help, in_our_words};
 
 impl Output {
     /// Returns the columns of these names: of a variable, or of a body, marker, driver or measure
@@ -113,5 +113,7 @@ fn suggestion(name: &str, columns: &[Output]) -> String {
     let markers = names().filter_map(|name| Some(name.rsplit_once('.')?.0));
     let mut further: Vec<&str> = markers.chain(names()).collect();
     further.dedup();
-    help(name, &owners, &further).map_or_else(String::new, |help| format!("; {help}"))
+    let words = in_our_words(name, &names().collect::<Vec<_>>());
+    let help = words.or_else(|| help(name, &owners, &further));
+    help.map_or_else(String::new, |help| format!("; {help}"))
 }

@@ -18,7 +18,7 @@
 //! | `stop` | [`Stop`]: limits of a coordinate |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
 //! | `setting` | start values of the FMU's settings |
-//! | `names`, `lookup`, `id` | names, and what they stand for |
+//! | `names`, `synonym`, `lookup`, `id` | names, other words for them, and what they stand for |
 //! | `wording` | names and numbers in messages |
 //!
 //! Nothing here computes a pose.
@@ -48,6 +48,7 @@ mod signal;
 mod source;
 mod spline;
 mod stop;
+mod synonym;
 mod syntax;
 mod table;
 mod toml_error;
@@ -89,6 +90,8 @@ pub use signal::{Order, Signal};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 pub use stop::{Stop, StopContact};
+#[cfg(feature = "cli")]
+pub(crate) use synonym::in_our_words;
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};

@@ -122,7 +122,7 @@ impl<'a, T: Copy> NameTable<'a, T> {
     }
 
     /// Returns the names in order, `None` after too many suggestions.
-    fn candidates(&self) -> Option<Vec<&'a str>> {
+    pub(super) fn candidates(&self) -> Option<Vec<&'a str>> {
         let left = self.suggestions_left.get().checked_sub(1)?;
         self.suggestions_left.set(left);
         let mut candidates: Vec<&str> = self.meanings.keys().copied().collect();

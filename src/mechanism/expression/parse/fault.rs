@@ -8,6 +8,7 @@ use crate::mechanism::expression::function::{CONSTANTS, FUNCTIONS};
 use crate::mechanism::expression::reserved::is_taken;
 use crate::mechanism::expression::token::{Token, TokenKind};
 use crate::mechanism::names;
+use crate::mechanism::synonym::in_our_words;
 use crate::mechanism::wording::quoted;
 
 impl Parser<'_> {
@@ -109,8 +110,9 @@ impl Parser<'_> {
             };
             let is_coordinate = moving.known.get(owner).is_some();
             let own = is_coordinate.then(|| format!("did you mean `{owner}`?"));
+            let words = || in_our_words(name, &moving.known.candidates()?);
             let near = || moving.known.near(name, &[]);
-            let help = own.or_else(near);
+            let help = own.or_else(words).or_else(near);
             let help = help.or_else(|| moving.known.of_same_owner(name));
             return error.help(help.unwrap_or_else(|| usable.to_owned()));
         }
