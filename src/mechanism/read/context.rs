@@ -1,6 +1,6 @@
 //! State of reading a file: the names and values known so far, and the problems found.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use toml::de::DeValue;
 
@@ -42,6 +42,8 @@ pub(super) struct Context<'a> {
     pub(super) parameter_dimensions: Vec<Option<Dimension>>,
     /// Lengths read so far, but for zeros.
     pub(super) lengths: Vec<Length>,
+    /// Keys that other ones were probably meant to be, by the place of their table.
+    pub(super) misspelt_keys: HashSet<(usize, &'static str)>,
     /// Whether anything uses each parameter.
     pub(super) parameters_used: Vec<bool>,
     /// Moving bodies.
@@ -78,6 +80,7 @@ impl<'a> Context<'a> {
             parameter_values: Vec::new(),
             parameter_dimensions: Vec::new(),
             lengths: Vec::new(),
+            misspelt_keys: HashSet::new(),
             parameters_used: Vec::new(),
             bodies: NameTable::new(),
             body_names: Vec::new(),

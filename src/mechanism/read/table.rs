@@ -223,11 +223,14 @@ impl<'a> Context<'a> {
 
     /// Reports unknown and conflicting keys.
     fn check_keys<T: Keys<'a>>(&mut self, fields: &Fields<'a>) {
-        let known: Vec<&str> = T::keys().iter().map(|key| key.name).collect();
+        let known: Vec<&'static str> = T::keys().iter().map(|key| key.name).collect();
         for key in fields.table.keys() {
             let name: &str = key.get_ref();
             if !known.contains(&name) {
                 let message = format!("unknown key {} in {}", quoted(name), fields.subject);
+                if let Some(meant) = names::nearest(name, &known) {
+                    self.misspelt_keys.insert((fields.place.start, meant));
+                }
                 let help = names::help(name, &known, &[]);
                 self.error(code::UNKNOWN_KEY, key.span(), message).help = help;
             }
@@ -283,7 +286,11 @@ impl<'a> Context<'a> {
         }
     }
 
-    pub(super) fn missing_key(&mut self, fields: &Fields<'a>, name: &str, example: &str) {
+    /// Reports a key that is missing, unless it stands there with a slip.
+    pub(super) fn missing_key(&mut self, fields: &Fields<'a>, name: &'static str, example: &str) {
+        if self.misspelt_keys.contains(&(fields.place.start, name)) {
+            return;
+        }
         let message = format!("{} has no `{name}`", fields.subject);
         self.error(code::MISSING_KEY, fields.place.clone(), message)
             .suggest(format!("add `{name} = {example}`"));
