@@ -93,7 +93,8 @@ impl<'a> Context<'a> {
         let table = self.any_points(keys)?;
         let falls = |pair: &[[f64; 2]]| pair[0][0] >= pair[1][0];
         if let Some(at) = table.values.windows(2).position(falls) {
-            let [before, x] = shown_apart(table.values[at][0], table.values[at + 1][0]);
+            let [before, x] =
+                shown_apart(self.written(&table, at, 0), self.written(&table, at + 1, 0));
             let line = table.line(at + 1);
             let message =
                 format!("the first column of a table must rise; {line}{x} comes after {before}");
@@ -232,6 +233,12 @@ impl<'a> Context<'a> {
         None
     }
 
+    /// Returns a column of a point as the file has it, before it is multiplied by its factor.
+    fn written(&self, table: &PointTable, at: usize, column: usize) -> f64 {
+        let number = &table.table.points[at][column];
+        number.evaluate(&|id| self.known_value(id), 0.0)
+    }
+
     /// Reports the first point whose ordinate is not positive.
     pub(super) fn check_ordinates_positive(
         &mut self,
@@ -241,7 +248,7 @@ impl<'a> Context<'a> {
         let Some(at) = table.values.iter().position(|[_, y]| *y <= 0.0) else {
             return Some(());
         };
-        let (line, value) = (table.line(at), shown(table.values[at][1]));
+        let (line, value) = (table.line(at), shown(self.written(table, at, 1)));
         let message = format!("{subject} must be positive; {line}it is {value}");
         self.error(code::ILLEGAL_VALUE, table.span(at), message);
         None
