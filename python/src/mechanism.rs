@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use biela::cli;
 use biela::drawing::{Diagram, Followed, ForcePlace, svg};
 use biela::kinematics::{
-    Direction, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices,
+    Direction, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices, offer_start,
 };
 use biela::mechanism::{Diagnostic, DriverId, Mechanism as Model, Order, ParameterId, Source};
 use biela::page::{Place, edit};
@@ -471,7 +471,8 @@ impl Mechanism {
         if let Some(home) = self.home.get() {
             return Ok(Arc::clone(home));
         }
-        let solver = Solver::assembled(self.model.clone(), &Path::new(&self.model))?;
+        let solver = Solver::assembled(self.model.clone(), &Path::new(&self.model));
+        let solver = solver.map_err(|error| offer_start(error, &self.model))?;
         let mut choices = SolverChoices::default();
         solver.copy_choices(&mut choices);
         let home = Arc::new((solver.pose().clone(), choices));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::error::Error;
 use super::message::{Message, tell};
 use super::render::render;
-use crate::kinematics::{self, Path, Solver};
+use crate::kinematics::{self, Path, Solver, offer_start};
 use crate::mechanism::{Diagnostic, Mechanism, Source};
 
 /// A mechanism file that was read without errors.
@@ -72,7 +72,7 @@ impl Input {
     pub(super) fn assemble(&self) -> Result<Solver, Error> {
         let path = Path::new(&self.mechanism);
         let solver = Solver::assembled(Arc::clone(&self.mechanism), &path);
-        solver.map_err(|error| self.error(error))
+        solver.map_err(|error| self.error(offer_start(error, &self.mechanism)))
     }
 }
 

@@ -135,12 +135,14 @@ pub enum Error {
         error: ProfileError,
     },
     /// No pose satisfies all equations, or none was found.
-    #[error("{}", not_assembled_message(verdict, open))]
+    #[error("{}", not_assembled_message(verdict, open, fit.as_deref()))]
     NotAssembled {
         /// Proved impossible, or not found.
         verdict: Verdict,
         /// The joints that stay open in the nearest pose found.
         open: Vec<OpenJoint>,
+        /// The length that would close it there, if one joint alone stays open.
+        fit: Option<Box<Fit>>,
         /// q of that pose.
         nearest: Vec<f64>,
     },
@@ -158,12 +160,14 @@ pub enum Error {
         values: Vec<String>,
     },
     /// The equations can be satisfied, but the Jacobian is singular there.
-    #[error("{}", singular_message(*.rcond, .bodies))]
+    #[error("{}", singular_message(*.rcond, .bodies, .aside.as_deref()))]
     Singular {
         /// Scaled reciprocal condition of the Jacobian.
         rcond: f64,
         /// The bodies that can move there without any driver; empty if not determined.
         bodies: Vec<String>,
+        /// A driver and a value of it beside a singular start, in words.
+        aside: Option<String>,
     },
     /// Values have no limit at a change point, or none that is known.
     #[error(
@@ -326,6 +330,15 @@ pub enum Remedy {
     Slots(Vec<String>),
     /// A coordinate of a body that is free to move, as a line of the mechanism file.
     Line(String),
+    /// Drivers of coordinates that are fixed or driven already, beside bodies that are free to move.
+    Elsewhere {
+        /// Kind and name of each driver; of several on one motion, all of them.
+        drivers: Vec<String>,
+        /// The joints and constraints that fix their coordinates: kind and name of each.
+        holders: Vec<String>,
+        /// A coordinate of a body that is free to move, as keys of the mechanism file.
+        keys: Option<String>,
+    },
 }
 
 /// A joint, constraint or driver that cannot be satisfied together with the rest.
@@ -388,32 +401,58 @@ pub enum Fit {
 
 impl fmt::Display for Fit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (origin, between, length, present) = match self {
-            Self::Phase { origin } => {
-                return write!(f, "{origin} would close with `phase = \"drawn\"`");
+        match self {
+            Self::Phase { origin } => write!(f, "{origin} would close with `phase = \"drawn\"`"),
+            Self::Length { origin, .. } => {
+                write!(f, "{origin} would fit with {}", self.length("", f64::round))
             }
+        }
+    }
+}
+
+impl Fit {
+    /// Says that lengths beyond this one let the mechanism close.
+    fn or_beyond(&self) -> String {
+        match self {
+            Self::Phase { .. } => self.to_string(),
             Self::Length {
                 origin,
-                between,
                 length,
                 present,
-            } => (origin, between, length, present),
+                ..
+            } => {
+                let length = match length > present {
+                    true => self.length("more than ", f64::ceil),
+                    false => self.length("less than ", f64::floor),
+                };
+                format!("{origin} would reach with {length}")
+            }
+        }
+    }
+
+    /// Returns the length, rounded by `round`, and the present one in words; nothing for a phase.
+    fn length(&self, relation: &str, round: fn(f64) -> f64) -> String {
+        let Self::Length {
+            between,
+            length,
+            present,
+            ..
+        } = self
+        else {
+            return String::new();
         };
         // As many digits as tell the two apart; rounding decides about none.
         let apart = (1e3 * (length - present)).abs().log10() + 1e-3;
-        let apart = apart.floor();
-        let decimals = (1.0 - apart).clamp(1.0, 12.0) as usize;
-        let show = |value: f64| format!("{:.decimals$} mm", 1e3 * value);
-        let (length, present) = (show(*length), show(*present));
+        let decimals = (1.0 - apart.floor()).clamp(1.0, 12.0) as usize;
+        let unit = 10_f64.powi(decimals as i32);
+        let length = round(1e3 * length * unit) / unit;
+        let [length, present] =
+            [length, 1e3 * present].map(|length| format!("{length:.decimals$} mm"));
         match between {
-            Some([from, to]) => write!(
-                f,
-                "{origin} would fit with {length} from `{from}` to `{to}`, which is {present} now"
-            ),
-            None => write!(
-                f,
-                "{origin} would fit with a length of {length}, which is {present} now"
-            ),
+            Some([from, to]) => {
+                format!("{relation}{length} from `{from}` to `{to}`, which is {present} now")
+            }
+            None => format!("a length of {relation}{length}, which is {present} now"),
         }
     }
 }
@@ -468,10 +507,10 @@ fn stopped_with(values: &[String]) -> String {
     format!(" with {}", list(values, " and "))
 }
 
-fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
+fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint], fit: Option<&Fit>) -> String {
     let open: Vec<_> = open.iter().map(OpenJoint::to_string).collect();
     let open = list(&open, ", ");
-    match verdict {
+    let message = match verdict {
         Verdict::Impossible { proof, ways: 1 } => {
             format!("the mechanism cannot close: {open}; {proof}")
         }
@@ -484,10 +523,14 @@ fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
              no proof that it cannot; in the nearest pose found {open}",
             if *starts == 1 { "" } else { "s" }
         ),
+    };
+    match fit {
+        Some(fit) => format!("{message}; {}", fit.or_beyond()),
+        None => message,
     }
 }
 
-fn singular_message(rcond: f64, bodies: &[String]) -> String {
+fn singular_message(rcond: f64, bodies: &[String], aside: Option<&str>) -> String {
     let mut message = format!(
         "the mechanism is in a singular position (a dead point or change point): the Jacobian has \
          a reciprocal condition of {rcond:.1e}"
@@ -497,6 +540,9 @@ fn singular_message(rcond: f64, bodies: &[String]) -> String {
             "; {} can move there while all drivers stand still",
             bodies.join(", ")
         );
+    }
+    if let Some(aside) = aside {
+        message += &format!("; start a little aside, such as with {aside}");
     }
     message
 }
@@ -519,6 +565,23 @@ fn structure_message(
         count(freedom, "degree of freedom", "degrees of freedom"),
         count(drivers, "driver", "drivers")
     );
+    if let Remedy::Elsewhere {
+        drivers,
+        holders,
+        keys,
+    } = remedy
+    {
+        let (drivers, holders) = (list(drivers, " and "), list(holders, " and "));
+        let cause = match holders.is_empty() {
+            true => format!("{drivers} drive one motion: give one of them"),
+            false => format!("{drivers} drives what {holders} already holds: give it"),
+        };
+        message += &format!("; {cause} a coordinate that is free");
+        if let Some(keys) = keys {
+            message += &format!(", such as `{keys}`");
+        }
+        return message + &format!("; free to move: {}", list(loose, ", "));
+    }
     if free > 0 {
         let add = if free == 1 {
             "add a driver for one of them".to_owned()

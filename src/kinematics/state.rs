@@ -115,6 +115,7 @@ pub(super) struct State {
 pub(super) const SINGULAR_HERE: Error = Error::Singular {
     rcond: 0.0,
     bodies: Vec::new(),
+    aside: None,
 };
 
 /// A driver with a larger velocity, or an acceleration above the square of it, may make rates of

@@ -181,6 +181,12 @@ fn a_mechanism_starts_next_to_a_change_point_but_not_on_it() {
         "{error}"
     );
     assert!(error.to_string().contains("change point"), "{error}");
+    // A start a little aside is offered, one at which it has just been assembled the other way.
+    let mechanism = parse(&text.replace("60*deg", "180*deg"));
+    let offered = biela::kinematics::offer_start(error, &mechanism).to_string();
+    let aside = "start a little aside, such as with driver `crank_angle` at 181 deg";
+    assert!(offered.ends_with(aside), "{offered}");
+    at(181.0).expect("it closes");
 }
 
 #[test]

@@ -19,7 +19,9 @@ use crate::cli::output::print;
 use crate::cli::signals::Signals;
 use crate::cli::suggested_estimates::as_estimates;
 use crate::cli::times::Times;
-use crate::kinematics::{self, Mode, Modes, Origin, Path, Play, Rates, Solver, System};
+use crate::kinematics::{
+    self, Mode, Modes, Origin, Path, Play, Rates, Solver, System, offer_start,
+};
 use crate::mechanism::{
     CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
     rounded, shown,
@@ -95,7 +97,7 @@ impl Check {
         print(&describe_equations(mechanism))?;
         let refuse = |error: kinematics::Error| {
             print(&describe_play(mechanism, &error))?;
-            Err(input.error(error))
+            Err(input.error(offer_start(error, mechanism)))
         };
         let mut solver = match Solver::new(Arc::clone(mechanism)) {
             Ok(solver) => solver,
@@ -261,7 +263,10 @@ fn describe_pose(solver: &mut Solver) -> String {
         let count: usize = redundancies.iter().map(|r| r.redundant).sum();
         let names: Vec<_> = redundancies
             .iter()
-            .map(|r| format!("{} of the {} of {}", r.redundant, r.equations, r.origin))
+            .map(|r| match r.equations {
+                1 => r.origin.clone(),
+                _ => format!("{} of the {} of {}", r.redundant, r.equations, r.origin),
+            })
             .collect();
         let names = names.join(", ");
         let _ = writeln!(out, "  {:<20}{count:>4}    {names}", "redundant");

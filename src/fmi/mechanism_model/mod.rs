@@ -59,7 +59,7 @@ use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::dynamics::{FreeMotion, FreeState};
 use crate::kinematics::{
-    self, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
+    self, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices, offer_start,
 };
 use crate::mechanism::{
     Driver, DriverId, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource, Signal,
@@ -223,7 +223,8 @@ impl MechanismModel {
         decisions: &Decisions,
     ) -> Result<Self, kinematics::Error> {
         let path = Path::new(&mechanism);
-        let solver = Solver::assembled(Arc::clone(&mechanism), &path)?;
+        let solver = Solver::assembled(Arc::clone(&mechanism), &path);
+        let solver = solver.map_err(|error| offer_start(error, &mechanism))?;
         let file_pose = Arc::new(solver.pose().clone());
         let mut file_choices = SolverChoices::default();
         solver.copy_choices(&mut file_choices);

@@ -10,7 +10,9 @@
 //! | [`play`] | the play that constraints need that contradict each other |
 //! | [`geometry_check`] | distances of wheels, hollows of cams |
 //! | `off_pulley` | ropes that leave their pulleys |
+//! | `aside` | a start beside a singular position |
 
+mod aside;
 mod geometry_check;
 mod instant_centre;
 mod modes;
@@ -20,6 +22,7 @@ mod range;
 mod sensitivity;
 mod transmission;
 
+pub use aside::offer_start;
 pub(super) use geometry_check::geometry_warnings;
 pub use geometry_check::{GeometryWarning, GeometryWarningKind};
 pub use instant_centre::InstantCentre;

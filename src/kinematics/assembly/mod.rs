@@ -13,6 +13,7 @@
 //! | [`part`] | assembles a part of the mechanism from several starts |
 //! | [`closure`] | closes a mechanism as a whole on any rows |
 //! | [`gaps`] | the joints that stay open |
+//! | [`fit`] | the length or the phase that would close one |
 //! | [`loops`] | finds all branches of a block by bounds over intervals |
 //! | [`branches`] | lists the branches of one block |
 //! | [`search`] | finds branches of all blocks that fit together |
@@ -21,6 +22,7 @@
 pub(super) mod branches;
 pub(super) mod closure;
 pub(super) mod estimate;
+pub(super) mod fit;
 pub(super) mod gaps;
 pub(super) mod least_squares;
 mod loops;

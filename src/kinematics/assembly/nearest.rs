@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 
 use super::branches::{Branches, SearchEffort};
 use super::closure::{close_on, is_small};
+use super::fit::{fit, reach};
 use super::gaps::{CLOSED, STEPS_TO_NEAREST, gather, open_joints};
 use super::least_squares::LeastSquares;
 use super::part::{LARGEST_PART, STARTS};
 use super::search::{Nearest, NoBranch};
-use crate::kinematics::error::{Error, OpenJoint, Proof, Verdict};
+use crate::kinematics::error::{Error, Fit, OpenJoint, Proof, Verdict};
 use crate::kinematics::newton::Limits;
 use crate::kinematics::origin::Origin;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
@@ -187,6 +188,7 @@ fn judge(
                 None => state.rcond(compiled),
             },
             bodies: Vec::new(),
+            aside: None,
         };
     }
     let rows: Vec<_> = (0..compiled.system.equations().len()).collect();
@@ -210,8 +212,14 @@ fn judge(
             starts: failure.starts,
         }
     };
+    let fit = match &open[..] {
+        [(origin, joint)] => reach(&compiled.system, state, *origin, joint.gap),
+        _ => None,
+    };
+    let fit = fit.or_else(|| find_length(compiled, state, &open));
     Error::NotAssembled {
         verdict,
+        fit: fit.map(Box::new),
         open: open.into_iter().map(|(_, joint)| joint).collect(),
         nearest: state.pose.q.clone(),
     }
@@ -237,6 +245,43 @@ fn proof(
             boxes: failure.boxes,
         }
     })
+}
+
+/// Returns the length of a link, a rope or a body between two pins that has to change least for the
+/// mechanism to close. Returns `None` for a large mechanism, and if a driver asks for too much.
+fn find_length(
+    compiled: &CompiledMechanism,
+    state: &mut State,
+    open: &[(Origin, OpenJoint)],
+) -> Option<Fit> {
+    /// Most joints that are tried: each costs a minimisation.
+    const MOST_JOINTS: usize = 12;
+    let CompiledMechanism { system, .. } = compiled;
+    let joints = &system.mechanism().joints;
+    let is_driver = |(origin, _): &(Origin, OpenJoint)| matches!(origin, Origin::Driver(_));
+    if !is_small(system) || joints.len() > MOST_JOINTS || open.iter().any(is_driver) {
+        return None;
+    }
+    let rows: Vec<_> = (0..system.equations().len()).collect();
+    let mut problem = LeastSquares::of_all(system, &rows);
+    let mut best: Option<(f64, Fit)> = None;
+    for origin in (0..joints.len()).map(Origin::Joint) {
+        state.move_to_pose(system);
+        // Without a length of its own the gap is not worth a minimisation.
+        if fit(system, state, origin).is_none() {
+            continue;
+        }
+        let largest = gather(compiled, state, &mut problem, origin);
+        if let [(only, joint)] = &open_joints(compiled, state, &rows, largest)[..]
+            && *only == origin
+            && let Some(fit) = reach(system, state, origin, joint.gap)
+            && best.as_ref().is_none_or(|(least, _)| joint.gap < *least)
+        {
+            best = Some((joint.gap, fit));
+        }
+    }
+    state.move_to_pose(system);
+    best.map(|(_, fit)| fit)
 }
 
 /// Gathers the gap in one joint: the one with the smallest gap, on a tie the one declared last.

@@ -50,16 +50,19 @@ impl fmt::Display for Redundancy {
             redundant,
             equations,
         } = self;
-        let set_aside = if *redundant == 1 {
-            "follows from the others; it is"
-        } else {
-            "follow from the others; they are"
+        let which = match (redundant, equations) {
+            (1, 1) => "it follows from the others; it is".to_owned(),
+            (1, _) => format!("1 of its {equations} follows from the others; it is"),
+            _ if redundant == equations => {
+                format!("all {equations} follow from the others; they are")
+            }
+            _ => format!("{redundant} of its {equations} follow from the others; they are"),
         };
-        write!(
-            f,
-            "constraint equations of {origin} are redundant: {redundant} of its {equations} \
-             {set_aside} set aside and watched"
-        )
+        let equations = match equations {
+            1 => format!("the constraint equation of {origin} is"),
+            _ => format!("constraint equations of {origin} are"),
+        };
+        write!(f, "{equations} redundant: {which} set aside and watched")
     }
 }
 

@@ -138,6 +138,7 @@ fn not_found(compiled: &CompiledMechanism, state: &State, open: Vec<OpenJoint>) 
     Error::NotAssembled {
         verdict: Verdict::NotFound { starts: STARTS },
         open,
+        fit: None,
         nearest,
     }
 }

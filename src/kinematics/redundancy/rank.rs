@@ -152,21 +152,30 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
     excess.sort_unstable();
     excess.dedup();
     let loose = moved_by(system, &ranks.echelon);
-    let slots = suspect_slots(mechanism, &loose);
-    let line = match slots.is_empty() && excess.is_empty() {
-        true => coordinate_line(mechanism, &loose),
-        false => None,
+    let keys = coordinate_keys(mechanism, &loose);
+    let describe = |origin: &Origin| origin.describe(mechanism);
+    let remedy = if free > 0 && !excess.is_empty() {
+        let is_driver = |origin: &&Origin| matches!(origin, Origin::Driver(_));
+        let (drivers, holders): (Vec<_>, Vec<_>) = excess.iter().partition(is_driver);
+        Remedy::Elsewhere {
+            drivers: drivers.into_iter().map(describe).collect(),
+            holders: holders.into_iter().map(describe).collect(),
+            keys: keys.map(|(_, keys)| keys),
+        }
+    } else {
+        let slots = suspect_slots(mechanism, &loose);
+        match keys.filter(|_| slots.is_empty() && excess.is_empty()) {
+            Some((name, keys)) => Remedy::Line(format!("{name} = {{ {keys} }}")),
+            None => Remedy::Slots(slots),
+        }
     };
     Err(Error::Structure {
         freedom,
         drivers: mechanism.drivers.len(),
         free,
-        remedy: Box::new(line.map_or(Remedy::Slots(slots), Remedy::Line)),
+        remedy: Box::new(remedy),
         loose,
-        excess: excess
-            .into_iter()
-            .map(|origin| origin.describe(mechanism))
-            .collect(),
+        excess: excess.iter().map(describe).collect(),
     })
 }
 
@@ -187,9 +196,9 @@ fn suspect_slots(mechanism: &Mechanism, loose: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// Returns a line that names the coordinate of a joint of a body that is free to move, of a joint
-/// with ground if there is one.
-fn coordinate_line(mechanism: &Mechanism, loose: &[String]) -> Option<String> {
+/// Returns a name for the coordinate of a joint of a body that is free to move, of a joint with
+/// ground if there is one, and the keys that give it.
+fn coordinate_keys(mechanism: &Mechanism, loose: &[String]) -> Option<(&'static str, String)> {
     let body = |marker: MarkerId| mechanism.markers[marker.index()].body;
     let name = |body: BodyId| &mechanism.bodies[body.index()].name;
     let is_loose = |marker: MarkerId| {
@@ -206,9 +215,8 @@ fn coordinate_line(mechanism: &Mechanism, loose: &[String]) -> Option<String> {
     } else {
         ("travel", "x")
     };
-    Some(format!(
-        "{name} = {{ coordinate = \"{kind}\", markers = [\"{from}\", \"{to}\"] }}"
-    ))
+    let keys = format!("coordinate = \"{kind}\", markers = [\"{from}\", \"{to}\"]");
+    Some((name, keys))
 }
 
 /// Returns the ranks at the present places of the bodies.
@@ -309,6 +317,7 @@ pub(super) fn singular_position(compiled: &CompiledMechanism, state: &State) -> 
     Error::Singular {
         rcond,
         bodies: moved_by(system, &echelon),
+        aside: None,
     }
 }
 

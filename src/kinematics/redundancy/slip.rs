@@ -7,16 +7,15 @@
 
 use super::rank::{constraint_rows, jacobian_rows};
 use crate::kinematics::Origin;
-use crate::kinematics::assembly::estimate::estimate;
-use crate::kinematics::assembly::gaps::{CLOSED, gather, open_joints};
+use crate::kinematics::assembly::fit::fit;
+use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
-use crate::kinematics::error::{Error, Fit, OpenJoint, OpenPose};
+use crate::kinematics::error::{Error, OpenJoint, OpenPose};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
-use crate::kinematics::system::{System, Target};
+use crate::kinematics::system::Target;
 use crate::kinematics::tolerances::DEPENDENT;
-use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};
 
 /// Largest scaled residual, less its rounding, of rows that agree. A motion multiplies the residual
 /// by less than a thousand before other rows are chosen: it stays below the 1e-9 at which the
@@ -144,92 +143,4 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
     }
     let (_, origins) = worst?;
     (echelon.kept().len() == system.unknowns()).then_some(origins)
-}
-
-/// Returns the length of a link or a rope, or between the two pins of a body, that would close an
-/// origin, or whether the phase of its wheels as drawn would.
-///
-/// Before: all other origins are closed at the present pose.
-fn fit(system: &System, state: &State, origin: Origin) -> Option<Fit> {
-    let mechanism = system.mechanism();
-    let Origin::Joint(index) = origin else {
-        return None;
-    };
-    let joint = &mechanism.joints[index];
-    let point = |marker| state.at.marker(marker).point;
-    let length = |from, to| (point(to) - point(from)).norm();
-    match joint.kind {
-        JointKind::Link { .. } | JointKind::Rope(_) => {
-            let row = system.rows_of(&[origin])[0];
-            Some(Fit::Length {
-                origin: origin.describe(mechanism),
-                between: None,
-                length: system.equations()[row].constraint.value(&state.at),
-                present: state.targets.constant(row),
-            })
-        }
-        JointKind::Revolute => {
-            // The body declared last of the two is the one that people have added.
-            let ends = [(joint.to, joint.from), (joint.from, joint.to)];
-            let body = |marker: MarkerId| mechanism.markers[marker.index()].body;
-            let mut found: Vec<_> = ends
-                .into_iter()
-                .filter_map(|(own, partner)| {
-                    let body = body(own)?;
-                    let other = other_pin(system, body, index)?;
-                    Some((body, own, partner, other))
-                })
-                .collect();
-            found.sort_by_key(|(body, ..)| body.index());
-            let (body, own, partner, other) = found.pop()?;
-            let name = |marker: MarkerId| mechanism.markers[marker.index()].name.clone();
-            Some(Fit::Length {
-                origin: format!("body `{}`", mechanism.bodies[body.index()].name),
-                between: Some([name(other), name(own)]),
-                length: length(other, partner),
-                present: length(other, own),
-            })
-        }
-        _ => {
-            joint.kind.phase()?;
-            let row = *system.rows_of(&[origin]).first()?;
-            let equation = &system.equations()[row];
-            let drawn = estimate(system, &state.pose.parameters).ok()?;
-            let mut at = state.at.clone();
-            let here = equation.constraint.value(&at);
-            at.set_pose(mechanism, &drawn);
-            let missing = (equation.constraint.value(&at) - here) * equation.row_scale(&at);
-            (missing.abs() <= CLOSED).then(|| Fit::Phase {
-                origin: origin.describe(mechanism),
-            })
-        }
-    }
-}
-
-/// Returns the marker of the second pin of a body that two pins hold and nothing else; `pin` is one
-/// of them.
-fn other_pin(system: &System, body: BodyId, pin: usize) -> Option<MarkerId> {
-    let mechanism = system.mechanism();
-    let on_body = |marker: MarkerId| mechanism.markers[marker.index()].body == Some(body);
-    let own = |joint: &Joint| [joint.from, joint.to].into_iter().find(|&m| on_body(m));
-    let unknowns = 3 * body.index()..3 * body.index() + 3;
-    let equations = system.equations().iter().enumerate();
-    let touching = equations.filter(|(row, _)| {
-        let columns = system.incidence(*row).unknowns;
-        columns.iter().any(|column| unknowns.contains(column))
-    });
-    let mut other = None;
-    for (_, equation) in touching {
-        let Origin::Joint(index) = equation.origin else {
-            return None;
-        };
-        let joint = &mechanism.joints[index];
-        if !matches!(joint.kind, JointKind::Revolute) {
-            return None;
-        }
-        if index != pin && other.replace(index).is_some_and(|before| before != index) {
-            return None;
-        }
-    }
-    other.and_then(|index| own(&mechanism.joints[index]))
 }

@@ -68,6 +68,7 @@ fn assemble_rows(
         return Err(Error::Singular {
             rcond,
             bodies: Vec::new(),
+            aside: None,
         });
     }
     settle(compiled, state);

@@ -231,8 +231,8 @@ fn redundant_constraints_are_named_and_warned_of() {
     let assert = biela(&["check", &file]).success();
     assert_eq!(
         stderr(&assert),
-        "warning: constraint equations of joint `A_again` are redundant: 2 of its 2 follow from \
-         the others; they are set aside and watched\n"
+        "warning: constraint equations of joint `A_again` are redundant: all 2 follow from the \
+         others; they are set aside and watched\n"
     );
     // On a terminal the kind has its colour, as that of what is wrong in the file.
     let colourful = Command::new(env!("CARGO_BIN_EXE_biela"))

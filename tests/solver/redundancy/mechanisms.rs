@@ -188,3 +188,46 @@ pub(crate) fn double(text: &str, name: &str) -> String {
     text.insert_str(end, &format!("\n{again}\n"));
     text
 }
+
+/// The rhombic drive of a Stirling engine: two cranks in mesh, four rods, two yokes, with the cranks
+/// estimated as mirror images. The gears' phase has them half a turn off.
+pub(crate) fn rhombic_drive() -> String {
+    let text = r#"
+format = 1
+name = "rhombic_drive"
+[parameters]
+r = 0.01397
+rod = 0.04602
+e = "half - 0.02065"
+half = 0.028
+[ground.markers]
+L = ["-half", 0]
+R = ["half", 0]
+axis = [0, 0, "90*deg"]
+[bodies.left]
+markers = { O = [0, 0], A = ["r", 0] }
+estimate = ["-half", 0, "150*deg"]
+[bodies.right]
+markers = { O = [0, 0], A = ["r", 0] }
+estimate = ["half", 0, "30*deg"]
+[bodies.yoke_up]
+markers = { C = [0, 0, "90*deg"], L = ["-e", 0], R = ["e", 0] }
+estimate = [0, "45*mm", 0]
+[bodies.yoke_down]
+markers = { C = [0, 0, "90*deg"], L = ["-e", 0], R = ["e", 0] }
+estimate = [0, "-35*mm", 0]
+[joints]
+L = { type = "revolute", markers = ["ground.L", "left.O"] }
+R = { type = "revolute", markers = ["ground.R", "right.O"] }
+mesh = { type = "gear", markers = ["left.O", "right.O"], radii = ["half", "half"] }
+rod1 = { type = "link", markers = ["left.A", "yoke_up.L"], length = "rod" }
+rod2 = { type = "link", markers = ["right.A", "yoke_up.R"], length = "rod" }
+rod3 = { type = "link", markers = ["left.A", "yoke_down.L"], length = "rod" }
+rod4 = { type = "link", markers = ["right.A", "yoke_down.R"], length = "rod" }
+bore_up = { type = "translational", markers = ["ground.axis", "yoke_up.C"] }
+bore_down = { type = "translational", markers = ["ground.axis", "yoke_down.C"] }
+[drivers]
+turn = { coordinate = "angle", markers = ["ground.L", "left.O"], start = "150*deg" }
+"#;
+    text.to_owned()
+}

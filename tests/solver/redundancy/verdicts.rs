@@ -8,7 +8,7 @@ use biela::mechanism::Mechanism;
 use crate::common::parse;
 use crate::redundancy::mechanisms::{
     angle_driver, belt, body, cam_touched_twice, crank_angle, file, four_bar, joint, lined_up,
-    parallelogram, slider_crank, welded, wheels, with_joints, without_driver,
+    parallelogram, rhombic_drive, slider_crank, welded, wheels, with_joints, without_driver,
 };
 
 fn solve(text: &str) -> Result<Solver, Error> {
@@ -51,7 +51,7 @@ fn check(bank: Vec<(&str, String, Verdict)>) {
             (Err(Error::Contradiction { origins, .. }), Contradicts(expected)) => {
                 assert_eq!(origins, expected, "{name}");
             }
-            (Err(Error::Singular { bodies, rcond }), Singular(expected)) => {
+            (Err(Error::Singular { bodies, rcond, .. }), Singular(expected)) => {
                 assert_eq!(bodies, expected, "{name}");
                 assert!(rcond < 1e-7, "{name}: {rcond}");
             }
@@ -213,6 +213,21 @@ fn free_bodies_and_surplus_drivers_are_named() {
             ),
         ),
         (
+            "driven twice at one end, free at another",
+            parallelogram(&[], 60.0, true).replace(
+                "[joints]",
+                &(body("loose", "P = [0, 0]", "0, 0, 0")
+                    + "[joints]\n"
+                    + &joint("pin", "revolute", "rocker.B", "loose.P")),
+            ) + &angle_driver("again", "ground.O4", "rocker.O", 60.0),
+            Says(
+                "the mechanism has 2 degrees of freedom and 2 drivers; driver `crank_angle` and \
+                 driver `again` drive one motion: give one of them a coordinate that is free, such \
+                 as `coordinate = \"angle\", markers = [\"rocker.B\", \"loose.P\"]`; free to move: \
+                 body `loose`",
+            ),
+        ),
+        (
             "driven where it is held",
             slider_crank(
                 "",
@@ -220,9 +235,10 @@ fn free_bodies_and_surplus_drivers_are_named() {
                 &angle_driver("tilt", "ground.guide", "slider.B", 0.0),
             ),
             Says(
-                "the mechanism has 1 degree of freedom and 1 driver; free to move: body `crank`, \
-                 body `rod`, body `slider`: add a driver for one of them; too many: remove one of \
-                 joint `guide`, driver `tilt`",
+                "the mechanism has 1 degree of freedom and 1 driver; driver `tilt` drives what \
+                 joint `guide` already holds: give it a coordinate that is free, such as \
+                 `coordinate = \"x\", markers = [\"ground.guide\", \"slider.B\"]`; free to move: \
+                 body `crank`, body `rod`, body `slider`",
             ),
         ),
     ]);
@@ -254,6 +270,15 @@ fn contradictions_are_named_with_their_gaps() {
                 "joint `k` contradicts all others: with these closed, it stays open by 30.00 deg; \
                  move one of its markers by as much, or remove it: joint `k` would close with \
                  `phase = \"drawn\"`",
+            ),
+        ),
+        (
+            "a rhombic drive whose gears mesh half a turn off",
+            rhombic_drive(),
+            Says(
+                "joint `mesh` contradicts all others: with these closed, it stays open by 180.0 \
+                 deg; move one of its markers by as much, or remove it: joint `mesh` would close \
+                 with `phase = \"drawn\"`",
             ),
         ),
         (
@@ -302,7 +327,8 @@ fn contradictions_are_named_with_their_gaps() {
             Says(
                 "the mechanism cannot close: joint `O4` stays open by 142.8 mm; `crank.A` and \
                  `ground.O4` are 692.8 mm apart, `coupler` and `rocker` together span 50.00 mm to \
-                 550.0 mm",
+                 550.0 mm; body `rocker` would reach with more than 442.9 mm from `B` to `O`, \
+                 which is 300.0 mm now",
             ),
         ),
     ]);

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::{Arc, Mutex};
 
 use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
+use biela::kinematics::Redundancy;
 
 use crate::common::parse;
 use crate::redundancy::mechanisms::parallelogram;
@@ -69,4 +70,35 @@ fn the_log_advises_once() {
           it is set aside and watched"
         ]
     );
+}
+
+#[test]
+fn all_equations_of_a_joint_or_its_only_one_are_told_as_such() {
+    let redundancy = |redundant, equations| Redundancy {
+        origin: "joint `k`".to_owned(),
+        redundant,
+        equations,
+    };
+    for (redundant, equations, says) in [
+        (
+            1,
+            1,
+            "the constraint equation of joint `k` is redundant: it follows from the others; it is \
+             set aside and watched",
+        ),
+        (
+            2,
+            2,
+            "constraint equations of joint `k` are redundant: all 2 follow from the others; they \
+             are set aside and watched",
+        ),
+        (
+            2,
+            3,
+            "constraint equations of joint `k` are redundant: 2 of its 3 follow from the others; \
+             they are set aside and watched",
+        ),
+    ] {
+        assert_eq!(redundancy(redundant, equations).to_string(), says);
+    }
 }

@@ -13,8 +13,9 @@ mod two_loops;
 
 use std::sync::Arc;
 
+use self::mechanisms::{linked, slider_crank, upright};
 use crate::common::{parse, straight_to};
-use biela::kinematics::{Error, OpenJoint, Path, Reason, Solver, Verdict};
+use biela::kinematics::{Error, Fit, OpenJoint, Path, Reason, Solver, Verdict};
 use biela::mechanism::{Mechanism, Source};
 
 /// Expected verdict.
@@ -128,6 +129,7 @@ fn judge(case: &Case) {
                 verdict,
                 open,
                 nearest,
+                ..
             }),
         ) => {
             let Verdict::Impossible { ways, .. } = verdict else {
@@ -209,5 +211,59 @@ fn an_arm_of_any_size_beside_it_leaves_the_verdict_the_same() {
             case.text = invariance::with_arm(&case.text, length);
         }
         judge_all(&bank);
+    }
+}
+
+/// The length that would do is told, with what it is now, and does.
+#[test]
+fn the_length_with_which_it_would_close_is_told() {
+    let upright = |coupler, rocker| upright([1.0, coupler, rocker, 2.0], 90.0);
+    let with_rod = |rod| slider_crank(rod, 4.0, 90.0, ["0, 0, 1", "0, 0, 0", "1, 0, 0"]);
+    let linked = |length| linked(length, 90.0, ["0, 0, 1", "4, 0, 1.5"]);
+    // The least change of a length of the closed forms of the bank, and the mechanism with one a
+    // little beyond.
+    let (five, seventeen) = (5_f64.sqrt(), 17_f64.sqrt());
+    for (text, length, beyond, says) in [
+        (
+            upright(1.0, 1.0),
+            five - 1.0,
+            upright(1.0, 1.24),
+            "body `rocker` would reach with more than 1236.1 mm from `B` to `O`, which is 1000.0 \
+             mm now",
+        ),
+        (
+            upright(1.0, 4.0),
+            five + 1.0,
+            upright(1.0, 3.2),
+            "body `rocker` would reach with less than 3236.0 mm from `B` to `O`, which is 4000.0 \
+             mm now",
+        ),
+        // The guide is what stays open; the rod is what is too short.
+        (
+            with_rod(2.0),
+            3.0,
+            with_rod(3.1),
+            "body `rod` would reach with more than 3000.0 mm from `A` to `B`, which is 2000.0 mm \
+             now",
+        ),
+        (
+            linked(9.0),
+            seventeen + 2.0,
+            linked(6.1),
+            "joint `rod` would reach with a length of less than 6123.1 mm, which is 9000.0 mm now",
+        ),
+    ] {
+        let Err(error) = solve(&text) else {
+            panic!("it closes: {says}");
+        };
+        assert!(error.to_string().ends_with(says), "{error}");
+        let Error::NotAssembled { fit: Some(fit), .. } = error else {
+            panic!("without a length: {error}");
+        };
+        let Fit::Length { length: found, .. } = *fit else {
+            panic!("{fit:?}");
+        };
+        assert!((found - length).abs() < 1e-6, "{found}, not {length}");
+        assert!(solve(&beyond).is_ok(), "{says}");
     }
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::forces::Forces;
 use super::{NEARLY_SINGULAR, equations_of_joints, excursions};
 use crate::cli::error::Error;
-use crate::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System};
+use crate::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System, offer_start};
 use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
 /// Returns the report on a file and the outcome of the command.
@@ -55,6 +55,7 @@ pub(in crate::cli) fn report_on(source: &Source, modes: bool) -> Value {
             report["assembled"] = found;
         }
         Err(error) => {
+            let error = offer_start(error, &mechanism);
             report["error"] = json!({ "message": error.to_string() });
             if let kinematics::Error::NotAssembled { open, nearest, .. } = &error {
                 report["error"]["open"] = gaps(open);

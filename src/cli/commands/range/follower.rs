@@ -60,6 +60,7 @@ impl<'a> Follower<'a> {
             return Err(Error::Singular {
                 rcond: sample.rcond,
                 bodies: Vec::new(),
+                aside: None,
             });
         }
         self.solution.solve(self.solver)
