@@ -6,6 +6,7 @@ use biela::cli::{check_parameter, parameter_value, unknown_name};
 use biela::kinematics::{Pose, SolverChoices};
 use biela::mechanism::{
     DriverId, DriverSource, Expression, Jet, Mechanism, Motion, Order, ParameterId, Variable,
+    large_angles,
 };
 use pyo3::prelude::*;
 
@@ -67,6 +68,20 @@ pub(crate) struct Scenario {
 pub(crate) type Start = (DriverId, Order, f64);
 
 impl Scenario {
+    /// Returns warnings of angles that look like degrees.
+    pub(crate) fn large_angles(&self) -> Vec<String> {
+        let samples = self.samples.iter().filter_map(|samples| {
+            let driver = &self.own.drivers[samples.driver.index()];
+            let is_angle = driver.coordinate.kind.is_angle();
+            let message = large_angles(&samples.orders[0]).filter(|_| is_angle)?;
+            Some(format!(
+                "drive: `{}`: {message}; NumPy has `np.radians`",
+                driver.name
+            ))
+        });
+        samples.collect()
+    }
+
     /// Lets freedoms begin elsewhere, or with other velocities, than the file says.
     pub(crate) fn set_starts(&mut self, starts: &[Start]) {
         for &(freedom, order, value) in starts {

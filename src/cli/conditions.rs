@@ -12,8 +12,9 @@ use super::signals::Signals;
 use crate::fmi;
 use crate::kinematics::{self, Solver};
 use crate::mechanism::{
-    DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Order, Parameter, ParameterId,
-    Unit, Variable, help, large_angle, not_finite, quoted, shown,
+    Dimension, DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Order, Parameter,
+    ParameterId, Unit, Variable, help, is_plain, large_angle, large_length, large_velocity,
+    not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
@@ -77,7 +78,10 @@ impl Conditions {
             if mechanism.drivers[index].coordinate.kind.is_angle()
                 && let Motion::Expression(expression) = &motion
             {
-                let at_start = expression.evaluate(&|p: ParameterId| parameters[p.index()], start);
+                let at_start = expression.evaluate(
+                    &|p: ParameterId| Jet::constant(parameters[p.index()]),
+                    Jet::variable(start),
+                );
                 warn_of_degrees(DRIVE.option, text, at_start);
             }
             driven.drivers[index].source = DriverSource::Motion(motion);
@@ -132,7 +136,7 @@ impl Conditions {
             return Err(Error::Usage(format!("{option}: {text} is not finite")));
         }
         if is_angle {
-            warn_of_degrees(option, text, value);
+            warn_of_degrees(option, text, Jet::constant(value));
         }
         Ok(value)
     }
@@ -181,8 +185,14 @@ impl Conditions {
                 .parse_expression(text, None)
                 .map_err(|error| SET.refuse(text, &error))?
                 .value(&defaults);
-            if parameter.unit.map(|unit| unit.dimension) == Some(Unit::RADIAN.dimension) {
-                warn_of_degrees(SET.option, text, values[index]);
+            match parameter.unit {
+                Some(unit) if unit.dimension == Dimension::ANGLE => {
+                    warn_of_degrees(SET.option, text, Jet::constant(values[index]));
+                }
+                Some(unit) if unit.dimension == Dimension::LENGTH => {
+                    warn_of_length(text, [values[index], defaults[index]], unit);
+                }
+                _ => {}
             }
             check_limits(parameter, values[index])
                 .map_err(|message| Error::Usage(format!("--set: {message}")))?;
@@ -192,15 +202,25 @@ impl Conditions {
     }
 }
 
-/// Warns of an angle of more than a turn that is made of plain numbers: it looks like degrees.
-pub(super) fn warn_of_degrees(option: &str, text: &str, value: f64) {
-    let mut words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "_.".contains(c)));
-    let is_plain = |word: &str| {
-        word.is_empty() || word == "t" || word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-    };
-    if let Some(message) = large_angle(value).filter(|_| words.all(is_plain)) {
-        let number = shown(value);
+/// Warns of an angle of more than a turn, or of a velocity of whole right angles, that is made of
+/// plain numbers: it looks like degrees.
+pub(super) fn warn_of_degrees(option: &str, text: &str, angle: Jet) {
+    let of_angle = large_angle(angle.value).map(|message| (message, angle.value));
+    let of_velocity = || Some((large_velocity(angle.first())?, angle.first()));
+    let suspect = of_angle.or_else(of_velocity);
+    if let Some((message, number)) = suspect.filter(|_| is_plain(text)) {
+        let number = shown(number);
         let warning = format!("{option}: {message}; degrees are written `{number}*deg`");
+        Message::Warning(warning).show();
+    }
+}
+
+/// Warns of a length of --set made of plain numbers that looks like millimetres beside the file's.
+fn warn_of_length(text: &str, [value, usual]: [f64; 2], unit: Unit) {
+    let suspect = large_length(value, usual, unit.display);
+    if let Some((message, name)) = suspect.filter(|_| is_plain(text)) {
+        let number = shown(value);
+        let warning = format!("{}: {message}; write `{number}*{name}`", SET.option);
         Message::Warning(warning).show();
     }
 }

@@ -20,6 +20,7 @@
 //! | `setting` | start values of the FMU's settings |
 //! | `names`, `synonym`, `lookup`, `id` | names, other words for them, and what they stand for |
 //! | `wording` | names and numbers in messages |
+//! | `unit_slip` | numbers that look like ones in another unit |
 //!
 //! Nothing here computes a pose.
 
@@ -52,6 +53,7 @@ mod synonym;
 mod syntax;
 mod table;
 mod toml_error;
+mod unit_slip;
 mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
@@ -95,12 +97,15 @@ pub(crate) use synonym::in_our_words;
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
+pub use unit_slip::large_angles;
+#[cfg(feature = "cli")]
+pub(crate) use unit_slip::{is_plain, large_angle, large_length, large_velocity};
+#[cfg(feature = "cli")]
+pub(crate) use wording::quoted;
 #[cfg(any(feature = "drawing", feature = "fmi"))]
 pub(crate) use wording::rounded;
 pub use wording::show_time;
 pub(crate) use wording::{fixed, fixed_apart, shown, shown_apart};
-#[cfg(feature = "cli")]
-pub(crate) use wording::{large_angle, quoted};
 
 /// Planar mechanism as its file describes it. Names, types and units are checked, assembly is not.
 ///

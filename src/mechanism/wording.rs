@@ -1,7 +1,5 @@
 //! Wording of messages: names in back quotes and numbers of few digits.
 
-use std::f64::consts::TAU;
-
 /// Longest piece of the file that a message repeats, in characters.
 const MAX_QUOTED_LENGTH: usize = 60;
 
@@ -59,12 +57,6 @@ pub(crate) fn fixed_apart(a: f64, b: f64, decimals: usize) -> [String; 2] {
     longer
         .find(|[a, b]| a != b)
         .unwrap_or_else(|| shown(decimals))
-}
-
-/// Says that an angle \[rad\] of more than a turn looks like degrees; `None` for any other.
-pub(crate) fn large_angle(angle: f64) -> Option<String> {
-    let (number, degrees) = (shown(angle), angle.to_degrees());
-    (angle.abs() > TAU).then(|| format!("an angle of {number} rad is {degrees:.1} deg"))
 }
 
 /// Returns two numbers with as many digits as tell them apart, six if that is enough.

@@ -237,6 +237,17 @@ def test_the_start_of_a_freedom_is_set(mechanism):
         pendulum.run(t=t, parameters={"swing.velocity": np.nan})
 
 
+def test_arrays_that_look_like_degrees_are_warned_of(mechanism):
+    four_bar = mechanism("four_bar")
+    turn = np.linspace(0, 360, 8)
+    message = "drive: `crank_angle`: an angle of 360 rad is 20626.5 deg; NumPy has `np.radians`"
+    with pytest.warns(biela.MechanismWarning, match=message):
+        four_bar.run(drive={"crank_angle": turn})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        four_bar.run(drive={"crank_angle": np.radians(turn)})
+
+
 def test_a_wrapped_angle_is_on_the_turn_nearest_the_last_value():
     mechanism = biela.loads(
         "format = 1\nname = 'arm'\n[ground.markers]\nO = [0, 0]\n[bodies.arm.markers]\nO = [0, 0]\n"

@@ -8,7 +8,7 @@ use crate::cli::error::Error;
 use crate::cli::message::Message;
 use crate::kinematics::Output;
 use crate::mechanism::{
-    Mechanism, Order, Separated, Unit, comma_hint, did_you_mean, help, large_angle, quoted,
+    Mechanism, Order, Separated, Unit, comma_hint, did_you_mean, help, large_angles, quoted,
     show_time,
 };
 
@@ -305,19 +305,14 @@ impl<'a> Column<'a> {
         Ok(())
     }
 
-    /// Warns of angles that look like degrees: more than a turn at the start, or whole numbers up to
-    /// more than a turn.
+    /// Warns of angles that look like degrees.
     fn warning_of_degrees(&self, values: &[f64]) -> Option<Message> {
         let is_angle = matches!(self.target, Target::Driver(_, Order::Position))
             && self.unit.name == Unit::RADIAN.name;
         if self.has_unit || !is_angle {
             return None;
         }
-        let is_whole = values.iter().all(|value| value.fract() == 0.0);
-        let larger = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
-        let largest = values.iter().fold(0.0, larger);
-        let suspect = if is_whole { largest } else { values[0] };
-        let message = large_angle(suspect)?;
+        let message = large_angles(values)?;
         let name = self.name;
         Some(Message::Warning(format!(
             "column `{name}`: {message}; a column of degrees is called `{name} [deg]`"

@@ -2,12 +2,15 @@
 
 mod fault;
 
+use std::f64::consts::TAU;
+
 use super::dimension::{Clash, Dimensions};
 use super::error::ExpressionError;
 use super::function::{Binary, constant, function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::NameTable;
+use crate::mechanism::number::Unary;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Dimension, ParameterId, Span};
 
@@ -59,6 +62,8 @@ pub(in crate::mechanism) struct Parsed {
     pub(in crate::mechanism) dimension: Option<Dimension>,
     /// First operation on operands that cannot be added.
     pub(in crate::mechanism) clash: Option<Clash>,
+    /// Place of the first number of more than a turn whose sine, cosine or tangent is taken.
+    pub(in crate::mechanism) large_angle: Option<Span>,
 }
 
 impl Expression {
@@ -165,6 +170,8 @@ struct Parser<'a> {
     /// Last token taken.
     previous: Option<Token<'a>>,
     program: Vec<Operation>,
+    /// Place of the first number of more than a turn whose sine, cosine or tangent is taken.
+    large_angle: Option<Span>,
     dimensions: Dimensions<'a>,
     /// Number of operands that wait at the end of the program.
     height: usize,
@@ -184,6 +191,7 @@ impl<'a> Parser<'a> {
             previous: None,
             program: Vec::new(),
             dimensions: Dimensions::new(dimensions),
+            large_angle: None,
             height: 0,
             depth: 0,
         })
@@ -195,6 +203,7 @@ impl<'a> Parser<'a> {
             expression: Expression::new(self.program),
             dimension: self.dimensions.result(),
             clash: self.dimensions.clash,
+            large_angle: self.large_angle,
         }
     }
 
@@ -368,7 +377,11 @@ impl<'a> Parser<'a> {
                 self.advance()?;
             }
         }
-        let span = place.start..self.expect_close(&open)?.end;
+        let close = self.expect_close(&open)?;
+        let span = place.start..close.end;
+        if let Operation::Unary(Unary::Sin | Unary::Cos | Unary::Tan) = function {
+            self.note_angle(open.end..close.start);
+        }
         if count < least || (count > least && !variadic) {
             let wanted = match (least, variadic) {
                 (1, _) => "1 argument",
@@ -384,6 +397,16 @@ impl<'a> Parser<'a> {
             self.emit(function, &span)?;
         }
         Ok(span)
+    }
+
+    /// Notes the argument of a function of an angle, if it is a plain number of more than a turn.
+    fn note_angle(&mut self, argument: Span) {
+        let text = &self.text[argument.clone()];
+        let start = argument.start + text.len() - text.trim_start().len();
+        let text = text.trim();
+        if text.parse().is_ok_and(|angle: f64| angle.abs() > TAU) {
+            self.large_angle.get_or_insert(start..start + text.len());
+        }
     }
 
     /// Appends the last operation of the text at `span`; computes it at once if its operands are

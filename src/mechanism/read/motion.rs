@@ -136,11 +136,15 @@ impl<'a> Context<'a> {
     ) -> Option<Motion> {
         let ReadMotion { course, span } = read;
         let is_distance = kind == Some(CoordinateKind::Distance);
+        let is_angle = kind.is_some_and(CoordinateKind::is_angle);
         let motion = match course {
             Course::Expression(expression) => Motion::Expression(expression),
             Course::Points(points, interpolation, ends) => {
                 if is_distance {
                     self.check_ordinates_positive(&points, "a distance")?;
+                }
+                if is_angle {
+                    self.warn_of_ordinates(&points);
                 }
                 Motion::Table(MotionTable {
                     table: points.table,
@@ -158,6 +162,9 @@ impl<'a> Context<'a> {
         if let Some(what) = not_finite(start) {
             self.not_finite(span, &format!("at t = {}, {what}", shown(start_time)));
             return None;
+        }
+        if is_angle && matches!(motion, Motion::Expression(_)) {
+            self.warn_of_motion(&span, start);
         }
         if is_distance && start.value <= 0.0 {
             let message = format!(

@@ -159,7 +159,7 @@ impl<'a> Context<'a> {
     }
 
     /// Parses a text; reports its first fault, or warns of quantities of different dimensions that
-    /// it adds.
+    /// it adds, and of a function of an angle that looks like degrees.
     fn parse(
         &mut self,
         value: &'a Value<'a>,
@@ -183,6 +183,11 @@ impl<'a> Context<'a> {
                     let span =
                         syntax::part_span(self.source, value.span(), text, clash.span.clone());
                     self.warn_of_clash(span, &part, clash.dimensions);
+                }
+                if let Some(argument) = &parsed.large_angle {
+                    let span = syntax::part_span(self.source, value.span(), text, argument.clone());
+                    let argument = text.get(argument.clone()).unwrap_or_default();
+                    self.warn_of_argument(&span, argument);
                 }
                 Some(parsed)
             }

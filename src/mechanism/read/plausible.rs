@@ -3,17 +3,17 @@
 use std::borrow::Cow;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::wording::{large_angle, quoted, shown};
-use crate::mechanism::{Dimension, DisplayUnit, Span, Unit};
+use crate::mechanism::unit_slip::{
+    GAP, LARGE, is_plain, large_angle, large_angles, large_in, large_velocity,
+};
+use crate::mechanism::wording::{quoted, shown};
+use crate::mechanism::{Dimension, DisplayUnit, Jet, Span, Unit};
 
 use super::context::{Context, Length};
 use super::number::Quantity;
 
-/// Least length \[m\] that may have been meant in millimetres: few mechanisms are larger.
-const LARGE: f64 = 10.0;
-/// Ratio of two neighbouring lengths from which they are likely to be in different units: between
-/// the parts of one mechanism it is a few tens.
-const GAP: f64 = 200.0;
+/// Help for an angle in degrees, before the text to write.
+const DEGREES: &str = "degrees are written";
 
 impl<'a> Context<'a> {
     /// Warns of a quantity in place of one in `unit` that has another dimension, or that looks
@@ -79,32 +79,66 @@ impl<'a> Context<'a> {
             return;
         };
         if let Some(message) = large_angle(value) {
-            let help = "degrees are written";
-            if !self.warn_again(code::LARGE_ANGLE, help, &angle.span) {
-                self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
-                    .suggest(format!("{help} `\"{text}*deg\"`"));
-            }
+            self.warn_of_large_angle(&angle.span, message, DEGREES, &format!("\"{text}*deg\""));
+        }
+    }
+
+    /// Warns of a function of a bare angle of more than a turn, which stands at `span`: `cos(45)`.
+    pub(super) fn warn_of_argument(&mut self, span: &Span, argument: &str) {
+        let angle = argument.parse().ok().and_then(large_angle);
+        if let Some(message) = angle {
+            self.warn_of_large_angle(span, message, DEGREES, &format!("{argument}*deg"));
+        }
+    }
+
+    /// Warns of a motion of an angle by plain numbers that looks like degrees: it has this value and
+    /// this velocity at the start.
+    pub(super) fn warn_of_motion(&mut self, span: &Span, start: Jet) {
+        let text = self.source.text().get(span.clone()).unwrap_or_default();
+        let text = text.trim_matches(['"', '\'']);
+        if !is_plain(text) {
+            return;
+        }
+        let written = format!("\"({text})*deg\"");
+        if let Some(message) = large_angle(start.value) {
+            self.warn_of_large_angle(span, message, DEGREES, &written);
+        } else if let Some(message) = large_velocity(start.first()) {
+            let help = "degrees per second are written";
+            self.warn_of_large_angle(span, message, help, &written);
+        }
+    }
+
+    /// Warns of bare angles of a table that look like degrees.
+    pub(super) fn warn_of_angles(&mut self, span: &Span, angles: &[f64]) {
+        if let Some(message) = large_angles(angles) {
+            let help = "a column of degrees has";
+            self.warn_of_large_angle(span, message, help, "scale = [1, \"deg\"]");
+        }
+    }
+
+    /// Warns of an angle once per kind of help, which is followed by the text to write.
+    fn warn_of_large_angle(&mut self, span: &Span, message: String, help: &str, written: &str) {
+        if !self.warn_again(code::LARGE_ANGLE, help, span) {
+            self.warn(code::LARGE_ANGLE, span.clone(), message)
+                .suggest(format!("{help} `{written}`"));
         }
     }
 
     /// Warns of a bare number that is large in its display unit: it looks like one in that unit.
     /// Returns whether it does.
     fn warn_of_display(&mut self, quantity: &Quantity, display: DisplayUnit) -> bool {
-        let is_decimal = [DisplayUnit::MILLIMETRE, DisplayUnit::CENTIMETRE].contains(&display);
         let Some((text, value)) = self.bare_text(quantity).zip(quantity.value) else {
             return false;
         };
-        let is_suspect = is_decimal && value.abs() >= LARGE;
-        if is_suspect {
-            let (number, shown, name) = (shown(value), shown(value * display.factor), display.name);
-            let message = format!("a length of {number} m is {shown} {name}");
-            let help = "values are SI";
-            if !self.warn_again(code::LARGE_LENGTH, help, &quantity.span) {
-                self.warn(code::LARGE_LENGTH, quantity.span.clone(), message)
-                    .suggest(format!("{help}: `value = \"{text}*{name}\"`"));
-            }
+        let Some((message, name)) = large_in(value, display) else {
+            return false;
+        };
+        let help = "values are SI";
+        if !self.warn_again(code::LARGE_LENGTH, help, &quantity.span) {
+            self.warn(code::LARGE_LENGTH, quantity.span.clone(), message)
+                .suggest(format!("{help}: `value = \"{text}*{name}\"`"));
         }
-        is_suspect
+        true
     }
 
     /// Warns of a marker `[0,1, 0]`: a comma between whole numbers, beside one with a blank, looks

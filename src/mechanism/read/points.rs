@@ -49,6 +49,7 @@ pub(super) struct PointTable {
     places: Vec<(Span, Option<u64>)>,
     /// Points in SI units; none if a parameter has no value.
     values: Vec<[f64; 2]>,
+    has_scale: bool,
 }
 
 impl PointTable {
@@ -143,6 +144,7 @@ impl<'a> Context<'a> {
             // Both or neither has been reported.
             _ => None,
         }?;
+        let has_scale = keys.scale.key.is_some();
         let scale = match keys.scale.optional()? {
             None => [1.0, 1.0].map(Expression::constant),
             Some(scale) => {
@@ -166,6 +168,7 @@ impl<'a> Context<'a> {
             table,
             places,
             values,
+            has_scale,
         })
     }
 
@@ -237,6 +240,18 @@ impl<'a> Context<'a> {
     fn written(&self, table: &PointTable, at: usize, column: usize) -> f64 {
         let number = &table.table.points[at][column];
         number.evaluate(&|id| self.known_value(id), 0.0)
+    }
+
+    /// Warns of ordinates, angles of plain numbers, that look like degrees.
+    pub(super) fn warn_of_ordinates(&mut self, table: &PointTable) {
+        let points = table.table.points.iter();
+        let angles: Option<Vec<f64>> = points.map(|[_, y]| y.literal()).collect();
+        let angles = angles.filter(|_| !table.has_scale).unwrap_or_default();
+        let largest = angles.iter().enumerate();
+        let largest = largest.max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
+        if let Some((at, _)) = largest {
+            self.warn_of_angles(&table.span(at), &angles);
+        }
     }
 
     /// Reports the first point whose ordinate is not positive.

@@ -325,13 +325,38 @@ fn plain_angles_of_more_than_a_turn_are_warned_of() {
         run("--drive", "crank_angle = 60 + 10*t"),
         "warning: --drive: an angle of 60 rad is 3437.7 deg; degrees are written `60*deg`\n"
     );
+    assert_eq!(
+        run("--drive", "crank_angle = 1 + 360*t"),
+        "warning: --drive: a velocity of 360 rad/s is 20626.5 deg/s; degrees are written \
+         `360*deg`\n"
+    );
     // The author of these has thought of the unit.
     for drive in [
+        "crank_angle = 1 + 360*deg*t",
+        "crank_angle = 1 + 300*t",
         "crank_angle = 600*deg + t",
         "crank_angle = 3*pi + t",
         "crank_angle = 6 + 10*t",
     ] {
         assert_eq!(run("--drive", drive), "", "{drive}");
+    }
+}
+
+#[test]
+fn a_length_of_millimetres_is_warned_of() {
+    let set = |file: &str, value: &str| {
+        let arguments = ["run", file, "--set", value, "--stop", "0"];
+        stderr(&biela(&arguments))
+    };
+    let file = "mechanisms/four_bar.toml";
+    let says = "warning: --set: a length of 60 m is 60000 mm; write `60*mm`\n";
+    assert!(set(file, "crank_length = 60").starts_with(says));
+    let folder = tempfile::tempdir().unwrap();
+    let bare = altered(folder.path(), "four_bar", &[(", display = \"mm\"", "")]);
+    let says = "warning: --set: a length of 60 m in place of 0.1 m; write `60*mm`\n";
+    assert!(set(&bare, "crank_length = 60").starts_with(says));
+    for value in ["crank_length = 60*mm", "crank_length = 0.06", "base = 0.41"] {
+        assert!(!set(file, value).contains("warning"), "{value}");
     }
 }
 
