@@ -7,7 +7,7 @@ use crate::mechanism::expression::is_taken;
 use crate::mechanism::names::is_legal;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{
-    BodyId, Coordinate, Diagnostic, Dimension, Driver, Measure, ParameterId, Span, Unit,
+    BodyId, Coordinate, Diagnostic, Dimension, Driver, Measure, ParameterId, Unit,
 };
 
 use super::context::Context;
@@ -79,32 +79,24 @@ impl<'a> Context<'a> {
         let mut all: Vec<(&str, Entry<'a>)> = entries.collect();
         all.sort_by_key(|(_, entry)| entry.key.span().start);
         let names: HashSet<&str> = all.iter().map(|(_, entry)| entry.name()).collect();
-        let mut earlier: HashMap<&str, (&str, Span)> = HashMap::new();
+        let mut earlier: HashMap<&str, (&str, Entry<'a>)> = HashMap::new();
         for (noun, entry) in all {
             let (name, span) = (entry.name(), entry.key.span());
             if self.check_name(entry, noun) && is_taken(name) {
                 let message = format!("the name {} is taken by the language", quoted(name));
                 self.error(code::RESERVED_NAME, span.clone(), message);
             }
-            let Some((first_noun, first_span)) = earlier.get(name) else {
-                earlier.insert(name, (noun, span));
+            let Some(first @ (first_noun, first_entry)) = earlier.get(name) else {
+                earlier.insert(name, (noun, entry));
                 continue;
             };
             let message = format!("the {noun} {} has the name of a {first_noun}", quoted(name));
             self.report(
                 Diagnostic::error(code::DUPLICATE_NAME, message)
                     .label(span, "")
-                    .label(first_span.clone(), format!("the {first_noun}")),
+                    .label(first_entry.key.span(), format!("the {first_noun}")),
             )
-            .suggest(match format!("{name}_{noun}") {
-                free if !names.contains(&*free) => {
-                    format!(
-                        "all these share one name space: call the {noun} {}",
-                        quoted(&free)
-                    )
-                }
-                _ => "all these share one name space".to_owned(),
-            });
+            .suggest(free_name([*first, (noun, entry)], &names));
         }
     }
 
@@ -117,6 +109,54 @@ impl<'a> Context<'a> {
                 .suggest("a letter, then letters, digits and `_`");
         }
         legal
+    }
+}
+
+/// Returns help for two things of one name: a free name for the one that is a quantity, otherwise for
+/// the second.
+fn free_name(things: [(&str, Entry<'_>); 2], names: &HashSet<&str>) -> String {
+    let [first, second] = things;
+    let (noun, entry, quantity) = match things.map(|(noun, entry)| quantity(noun, entry)) {
+        [Some(quantity), None] => (first.0, first.1, quantity),
+        [_, Some(quantity)] => (second.0, second.1, quantity),
+        [None, None] => (second.0, second.1, second.0),
+    };
+    let name = entry.name();
+    let numbered = (2..).map(|number| format!("{name}_{noun}_{number}"));
+    // Not `angle_angle`.
+    let words = [quantity, noun].into_iter().filter(|word| *word != name);
+    let mut candidates = words.map(|word| format!("{name}_{word}")).chain(numbered);
+    let free = candidates.find(|free| !names.contains(&**free));
+    let free = quoted(&free.unwrap_or_default());
+    format!("all these share one name space: call the {noun} {free}")
+}
+
+/// Returns the word for what a parameter is by its unit, or a driver, a freedom or a measure by its
+/// coordinate; `None` for other things.
+fn quantity(noun: &str, entry: Entry<'_>) -> Option<&'static str> {
+    let text = |key| {
+        entry
+            .value
+            .get_ref()
+            .as_table()?
+            .get(key)?
+            .get_ref()
+            .as_str()
+    };
+    match noun {
+        "parameter" => Some(match declared(&entry) {
+            Some(Dimension::LENGTH) => "length",
+            Some(Dimension::ANGLE) => "angle",
+            _ => "value",
+        }),
+        "driver" | "freedom" | "measure" => Some(match text("coordinate") {
+            Some("angle") => "angle",
+            Some("x") => "x",
+            Some("y") => "y",
+            Some("distance") => "distance",
+            _ => return None,
+        }),
+        _ => None,
     }
 }
 
