@@ -458,7 +458,7 @@ impl Fit {
 }
 
 /// Formats a length with four digits, for messages.
-fn millimetres(length: f64) -> String {
+pub(super) fn millimetres(length: f64) -> String {
     format!("{} mm", four_digits(length * 1e3))
 }
 

@@ -73,8 +73,9 @@ mod tolerances;
 
 pub use alignment::{Alignment, Member, Relation};
 pub use analysis::{
-    ChangePoint, Direction, End, Extreme, GeometryWarning, GeometryWarningKind, InstantCentre,
-    Mode, Modes, OffPulley, Play, Range, RangeSettings, Sample, Sensitivity, offer_start,
+    ChangePoint, Direction, DrawnApart, End, Extreme, GeometryWarning, GeometryWarningKind,
+    InstantCentre, Mode, Modes, OffPulley, Play, Range, RangeSettings, Sample, Sensitivity,
+    offer_start,
 };
 pub use assembly::estimate::Move;
 pub use constraint::configuration::{

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::analysis::{
-    self, Direction, GeometryWarning, InstantCentre, Modes, OffPulley, Range, RangeSettings,
-    Sensitivity,
+    self, Direction, DrawnApart, GeometryWarning, InstantCentre, Modes, OffPulley, Range,
+    RangeSettings, Sensitivity,
 };
 use super::assembly::estimate::{Move, estimate, moves};
 use super::constraint::Constraint;
@@ -389,6 +389,13 @@ impl Solver {
     #[must_use]
     pub fn geometry_warnings(&self) -> Vec<GeometryWarning> {
         analysis::geometry_warnings(&self.compiled, &self.state)
+    }
+
+    /// Returns the joints whose markers were drawn far apart, in the order of declaration: slips of
+    /// coordinates in a mechanism that is drawn in one pose.
+    #[must_use]
+    pub fn drawn_apart(&self) -> Vec<DrawnApart> {
+        analysis::drawn_apart(&self.compiled, &self.state)
     }
 
     /// Returns the approach to a singular position, if the mechanism, at the end of a path, has

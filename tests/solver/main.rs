@@ -13,6 +13,7 @@ mod cam;
 mod closed_form;
 mod coupling;
 mod curve;
+mod drawn;
 mod forces;
 mod free;
 mod integrator;

@@ -34,7 +34,8 @@ use crate::mechanism::{
 /// reciprocal condition of the pose (1 is best, 0 a singular position). If it can close in other
 /// ways too, and has at most 40 bodies, a line says so. With masses or forces it
 /// prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. It
-/// warns of prescribed motions that leave the limits of their drivers. If the mechanism does not
+/// warns of prescribed motions that leave the limits of their drivers, and of joints whose markers
+/// were drawn apart in a mechanism that is drawn in one pose. If the mechanism does not
 /// close, it says whether that is proved, which joints stay open and by how much, and prints the
 /// nearest pose; if joints contradict each other, it prints the play that the last of them needs
 /// over the motion of the first driver.
@@ -115,6 +116,9 @@ impl Check {
             return refuse(error);
         }
         warn_of_misfits(&solver);
+        for joint in solver.drawn_apart() {
+            Message::Warning(joint.to_string()).show();
+        }
         for excursion in excursions(&solver) {
             Message::Warning(excursion).show();
         }

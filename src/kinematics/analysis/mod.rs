@@ -11,8 +11,10 @@
 //! | [`geometry_check`] | distances of wheels, hollows of cams |
 //! | `off_pulley` | ropes that leave their pulleys |
 //! | `aside` | a start beside a singular position |
+//! | `drawn` | markers of joints that were drawn apart |
 
 mod aside;
+mod drawn;
 mod geometry_check;
 mod instant_centre;
 mod modes;
@@ -23,6 +25,8 @@ mod sensitivity;
 mod transmission;
 
 pub use aside::offer_start;
+pub use drawn::DrawnApart;
+pub(super) use drawn::drawn_apart;
 pub(super) use geometry_check::geometry_warnings;
 pub use geometry_check::{GeometryWarning, GeometryWarningKind};
 pub use instant_centre::InstantCentre;

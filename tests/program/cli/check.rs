@@ -334,3 +334,33 @@ fn errors_have_colours_where_they_are_asked_for() {
     assert!(errors("CLICOLOR_FORCE").contains("\u{1b}["));
     assert!(!errors("NO_COLOR").contains('\u{1b}'));
 }
+
+#[test]
+fn a_joint_that_was_drawn_apart_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |x: f64| {
+        let path = folder.path().join("arm.toml");
+        let text = format!(
+            "format = 1\nname = \"arm\"\n[ground.markers]\nO = [0.1, 0]\nD = [0.5, 0]\n\
+             [bodies]\ncrank = {{ markers = {{ O = [0.1, 0], A = [0.1, 0.2] }} }}\n\
+             rod = {{ markers = {{ A = [0.1, 0.2], B = [{x}, 0.3] }} }}\n\
+             rocker = {{ markers = {{ B = [0.5, 0.3], D = [0.5, 0] }} }}\n[joints]\n\
+             O = {{ type = \"revolute\", markers = [\"ground.O\", \"crank.O\"] }}\n\
+             A = {{ type = \"revolute\", markers = [\"crank.A\", \"rod.A\"] }}\n\
+             B = {{ type = \"revolute\", markers = [\"rod.B\", \"rocker.B\"] }}\n\
+             D = {{ type = \"revolute\", markers = [\"ground.D\", \"rocker.D\"] }}\n[drivers]\n\
+             turn = {{ coordinate = \"angle\", markers = [\"ground.O\", \"crank.O\"], start = 0 }}\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    assert_eq!(stderr(&biela(&["check", &drawn(0.5)]).success()), "");
+    let file = drawn(0.59);
+    let says = "`rod.B` and `rocker.B` were drawn 90.00 mm apart: a slip in a coordinate?";
+    assert_eq!(
+        stderr(&biela(&["check", &file]).success()),
+        format!("warning: {says}\n")
+    );
+    let report = stdout(&biela(&["check", &file, "--format", "json"]).success());
+    assert!(report.contains(says), "{report}");
+}

@@ -141,6 +141,9 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
                 "unit": measure.coordinate.kind.unit().name,
             })
         });
+    let (misfits, drawn) = (solver.geometry_warnings(), solver.drawn_apart());
+    let misfits = misfits.iter().map(ToString::to_string);
+    let drawn = drawn.iter().map(ToString::to_string);
     let texts = |texts: &mut dyn Iterator<Item = String>| texts.collect::<Vec<_>>();
     let mut found = json!({
         "degrees_of_freedom": mechanism.drivers.len(),
@@ -155,7 +158,7 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
         "rcond": rcond,
         "nearly_singular": rcond < NEARLY_SINGULAR,
         "redundancies": texts(&mut solver.redundancies().iter().map(ToString::to_string)),
-        "misfits": texts(&mut solver.geometry_warnings().iter().map(ToString::to_string)),
+        "misfits": texts(&mut misfits.chain(drawn)),
         "excursions": excursions(&solver),
     });
     if mechanism.has_dynamics() {
