@@ -61,7 +61,13 @@ impl<'a> Context<'a> {
         if entries.is_empty() {
             return Vec::new();
         }
-        let is_complete = !self.failed;
+        if self.failed {
+            // Names of what is incomplete lead nowhere.
+            for entry in entries {
+                self.entry::<DerivedKeys<'a>>(*entry, "measure");
+            }
+            return Vec::new();
+        }
         let signals = mechanism.signals();
         let signals = signals.iter().map(|(name, signal, order)| {
             let variable = Variable::Signal(*signal, *order);
@@ -88,7 +94,7 @@ impl<'a> Context<'a> {
         };
         let read = |entry: &Entry<'a>| {
             let keys = self.entry::<DerivedKeys<'a>>(*entry, "measure")?;
-            let value = keys.value.value.filter(|_| is_complete)?;
+            let value = keys.value.value?;
             Some(DerivedMeasure {
                 name: entry.name().to_owned(),
                 description: keys.description.value.unwrap_or_default(),
