@@ -54,7 +54,7 @@ impl Signals {
         let names = without_empty_end(&header, 0);
         let mut header = Header::read(&names, mechanism, driven)?;
         let is_units = |(line, record): &(u64, csv::StringRecord)| {
-            header.is_row_of_units(record).then_some(*line)
+            header.is_row_of_units(&separated, record).then_some(*line)
         };
         if let Some(line) = rows.peek().and_then(is_units) {
             let (_, units) = rows.next().expect("it was looked at");
@@ -76,8 +76,7 @@ impl Signals {
             }
             let number = |place: usize| {
                 let field = fields[place];
-                let number = field.parse().ok().filter(|number: &f64| number.is_finite());
-                number.ok_or_else(|| {
+                separated.number(field).ok_or_else(|| {
                     let (shown, hint) = (quoted(field), comma_hint(field));
                     format!("line {line}: {shown} is not a finite number{hint}")
                 })
@@ -227,12 +226,12 @@ impl<'a> Header<'a> {
     }
 
     /// Returns whether a row has units in place of numbers, as some programs write below the names.
-    fn is_row_of_units(&self, row: &csv::StringRecord) -> bool {
+    fn is_row_of_units(&self, separated: &Separated<'_>, row: &csv::StringRecord) -> bool {
         let time = row.get(self.time).unwrap_or_default();
         let places = self.columns.iter().map(|column| column.place);
         let mut fields = places.map(|place| row.get(place).unwrap_or_default());
         !time.contains(|c: char| c.is_ascii_digit())
-            && fields.all(|text| text.parse::<f64>().is_err())
+            && fields.all(|text| separated.number(text).is_none())
     }
 
     /// Takes the units of the columns from a row.

@@ -65,7 +65,10 @@ pub(in crate::mechanism) enum TableFileError {
 }
 
 fn no_column(name: &str, header: &[String]) -> String {
-    if header.iter().all(|known| known.parse::<f64>().is_ok()) {
+    if header
+        .iter()
+        .all(|known| known.replace(',', ".").parse::<f64>().is_ok())
+    {
         return format!("it has no line of column names, so no column `{name}`");
     }
     let mut message = format!("it has no column `{name}`; its columns are");
@@ -98,7 +101,7 @@ impl TableFile {
         for (index, (line, record)) in separated.rows().enumerate() {
             if index == 0 {
                 let mut used = record.iter().take(2);
-                if columns.is_some() || used.all(|field| field.parse::<f64>().is_err()) {
+                if columns.is_some() || used.all(|field| separated.number(field).is_none()) {
                     header = record.iter().map(str::to_owned).collect();
                 }
                 if let Some(names) = columns {
@@ -118,10 +121,8 @@ impl TableFile {
                     found: record.len(),
                     expected: place + 1,
                 })?;
-                *value = field
-                    .parse()
-                    .ok()
-                    .filter(|number: &f64| number.is_finite())
+                *value = separated
+                    .number(field)
                     .ok_or_else(|| TableFileError::Number {
                         line,
                         found: field.to_owned(),
@@ -189,6 +190,11 @@ mod tests {
             "  0   1\n# between\n0.5\t-2e-3\n",
             "time angle\n0 1\n0.5 -2e-3\n",
             "0,1\n   \n0.5,-2e-3\n# end",
+            // As a German Excel writes them.
+            "Zeit;Winkel\r\n0;1\r\n0,5;-2e-3\r\n",
+            "\u{feff}sep=;\r\nZeit;Winkel\r\n0;1\r\n0,5;-0,002\r\n",
+            "0,0\t1\n0,5\t-0,002\n",
+            "SEP=,\n0,1\n0.5,-2e-3\n",
             "0 1\n0.5 -2e-3\n# end",
         ] {
             let read = rows(text, None).expect(text);
@@ -239,8 +245,12 @@ mod tests {
             ("0,1\n1\n", "line 2 ends after 1 of 2 columns"),
             ("0,x\n1,2\n", "line 1: `x` is not a finite number"),
             (
-                "t;u\n0;0,5\n",
+                "t,u\n0,\"0,5\"\n",
                 "line 2: `0,5` is not a finite number; decimals stand after a point",
+            ),
+            (
+                "sep=;\nt;u\n0;1.000,5\n",
+                "line 3: `1.000,5` is not a finite number; digits are not grouped",
             ),
         ] {
             assert_eq!(rows(text, None).expect_err(text).to_string(), message);

@@ -3,27 +3,38 @@
 use std::borrow::Cow;
 
 /// A text of columns separated by commas, semicolons, tabs or, where there are none of these, by
-/// blanks. Lines that start with `#` are skipped, and so are empty ones and a byte order mark.
+/// blanks. Lines that start with `#` are skipped, and so are empty ones and a byte order mark. A line
+/// `sep=;` before all others names the separator.
 #[derive(Debug)]
 pub(crate) struct Separated<'a> {
     text: Cow<'a, str>,
     delimiter: u8,
+    /// Whether blanks separate the columns; commas have taken their place.
+    has_blanks: bool,
 }
 
 impl<'a> Separated<'a> {
-    /// Makes a reader of the text. The first line that is no comment decides the separator.
+    /// Makes a reader of the text. A line such as `sep=;`, or else the first line that is no comment,
+    /// decides the separator.
     pub(crate) fn new(text: &'a str) -> Self {
         let text = text.trim_start_matches('\u{feff}');
+        let separated = |text, delimiter| Self {
+            text,
+            delimiter,
+            has_blanks: false,
+        };
+        let start = text.lines().next().unwrap_or_default();
+        if let Some(delimiter) = named_separator(start) {
+            // A comment in its place leaves the other lines where they are.
+            return separated(format!("#{}", &text[start.len()..]).into(), delimiter);
+        }
         let first = text
             .lines()
             .find(|line| !is_comment(line) && !line.trim().is_empty())
             .unwrap_or_default();
         let mut delimiters = [b'\t', b';', b','].into_iter();
         if let Some(delimiter) = delimiters.find(|delimiter| first.as_bytes().contains(delimiter)) {
-            return Self {
-                text: text.into(),
-                delimiter,
-            };
+            return separated(text.into(), delimiter);
         }
         // Commas for blanks leave the lines where they are.
         let lines = text.lines().map(|line| {
@@ -34,9 +45,19 @@ impl<'a> Separated<'a> {
             }
         });
         Self {
-            text: lines.collect::<Vec<_>>().join("\n").into(),
-            delimiter: b',',
+            has_blanks: true,
+            ..separated(lines.collect::<Vec<_>>().join("\n").into(), b',')
         }
+    }
+
+    /// Returns a finite number of a field. Its decimal mark is a point or, where no comma separates the
+    /// columns, a comma.
+    pub(crate) fn number(&self, field: &str) -> Option<f64> {
+        let number = match self.delimiter {
+            b',' => field.parse(),
+            _ => field.replacen(',', ".", 1).parse(),
+        };
+        number.ok().filter(|number: &f64| number.is_finite())
     }
 
     /// Returns the rows, of any number of columns: the line, from 1, and the fields without the
@@ -62,12 +83,10 @@ impl<'a> Separated<'a> {
     /// name before it: `time [s]`.
     #[cfg(feature = "cli")]
     pub(crate) fn names(&self, row: &csv::StringRecord) -> csv::StringRecord {
-        // Commas for blanks have made a text of its own.
-        let has_blanks = matches!(self.text, Cow::Owned(_));
         let mut names: Vec<String> = Vec::new();
         for field in row {
             match names.last_mut() {
-                Some(name) if has_blanks && is_bracketed(field) => {
+                Some(name) if self.has_blanks && is_bracketed(field) => {
                     name.push(' ');
                     name.push_str(field);
                 }
@@ -89,6 +108,17 @@ impl<'a> Separated<'a> {
     }
 }
 
+/// Returns the separator that a line such as `sep=;` names, as Excel writes it.
+fn named_separator(line: &str) -> Option<u8> {
+    let line = line.trim_matches('"');
+    match line.as_bytes() {
+        [name @ .., separator @ (b'\t' | b';' | b',')] if name.eq_ignore_ascii_case(b"sep=") => {
+            Some(*separator)
+        }
+        _ => None,
+    }
+}
+
 fn is_comment(line: &str) -> bool {
     line.starts_with('#')
 }
@@ -101,7 +131,9 @@ fn is_bracketed(field: &str) -> bool {
 
 /// Returns a hint for a field that is no number.
 pub(crate) fn comma_hint(found: &str) -> &'static str {
-    if found.contains(',') {
+    if found.contains(',') && found.contains('.') {
+        "; digits are not grouped"
+    } else if found.contains(',') {
         "; decimals stand after a point"
     } else {
         ""

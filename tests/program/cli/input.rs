@@ -67,6 +67,8 @@ fn columns_are_separated_and_lines_end_in_any_usual_way() {
     for content in [
         "time;side_length\n1;0.3\n3;0.5\n",
         "time\tside_length\n1\t0.3\n3\t0.5\n",
+        "time;side_length\n1,0;0,3\n3;0,5\n",
+        "sep=;\r\ntime;side_length\r\ns;m\r\n1;0,3\r\n3;0,5\r\n",
         "\u{feff}time  side_length\r\n 1 0.3\r\n3 0.5",
         "\u{feff}time,side_length\r\n1,0.3\r\n3,0.5\r\n",
         "time,side_length,\n1,0.3,\n   \n3,0.5,\n# end",
@@ -135,7 +137,7 @@ fn faults_of_a_file_of_values_are_named_with_their_line() {
         ),
         ("time\n0\n", &[], "it has no column besides `time`"),
         (
-            "time;side_length\n0;0,3\n",
+            "time,side_length\n0,\"0,3\"\n",
             &[],
             "line 2: `0,3` is not a finite number; decimals stand after a point",
         ),
