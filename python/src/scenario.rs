@@ -72,8 +72,9 @@ impl Scenario {
     pub(crate) fn large_angles(&self) -> Vec<String> {
         let samples = self.samples.iter().filter_map(|samples| {
             let driver = &self.own.drivers[samples.driver.index()];
-            let is_angle = driver.coordinate.kind.is_angle();
-            let message = large_angles(&samples.orders[0]).filter(|_| is_angle)?;
+            // Wrapped values have been put on the turn of the start.
+            let is_given = driver.coordinate.kind.is_angle() && !driver.wrapped;
+            let message = large_angles(&samples.orders[0]).filter(|_| is_given)?;
             Some(format!(
                 "drive: `{}`: {message}; NumPy has `np.radians`",
                 driver.name

@@ -571,12 +571,28 @@ fn structure_message(
         keys,
     } = remedy
     {
-        let (drivers, holders) = (list(drivers, " and "), list(holders, " and "));
-        let cause = match holders.is_empty() {
-            true => format!("{drivers} drive one motion: give one of them"),
-            false => format!("{drivers} drives what {holders} already holds: give it"),
+        let hold = if holders.len() == 1 { "holds" } else { "hold" };
+        let holders = list(holders, " and ");
+        let names = list(drivers, " and ");
+        message += &match (drivers.len(), holders.is_empty()) {
+            (_, true) => {
+                format!("; {names} drive one motion: give one of them a coordinate that is free")
+            }
+            (1, _) => format!(
+                "; {names} drives what {holders} already {hold}: give it a coordinate that is free"
+            ),
+            (count, _) => {
+                let rest = if count > free {
+                    ", and remove the rest"
+                } else {
+                    ""
+                };
+                format!(
+                    "; {names} drive what {holders} already {hold}: give one of them a coordinate \
+                     that is free{rest}"
+                )
+            }
         };
-        message += &format!("; {cause} a coordinate that is free");
         if let Some(keys) = keys {
             message += &format!(", such as `{keys}`");
         }

@@ -241,6 +241,22 @@ fn free_bodies_and_surplus_drivers_are_named() {
                  body `crank`, body `rod`, body `slider`",
             ),
         ),
+        (
+            "driven twice where it is held",
+            slider_crank(
+                "",
+                "",
+                &(angle_driver("tilt", "ground.guide", "slider.B", 0.0)
+                    + "lift = { coordinate = \"y\", markers = [\"ground.guide\", \"slider.B\"], \
+                       start = 0 }\n"),
+            ),
+            Says(
+                "the mechanism has 1 degree of freedom and 2 drivers; driver `tilt` and driver \
+                 `lift` drive what joint `guide` already holds: give one of them a coordinate \
+                 that is free, and remove the rest, such as `coordinate = \"x\", markers = [\"ground.guide\", \
+                 \"slider.B\"]`; free to move: body `crank`, body `rod`, body `slider`",
+            ),
+        ),
     ]);
 }
 
