@@ -81,7 +81,7 @@ pub(crate) fn run(
         film: Film::new(told, arrows, rows, parameters),
         rows: 0,
         stop: None,
-        notices: scenario.large_angles(),
+        notices: scenario.whole_angles(),
     };
     for row in 0..rows {
         if row > 0 {

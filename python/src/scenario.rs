@@ -6,7 +6,7 @@ use biela::cli::{check_parameter, parameter_value, unknown_name};
 use biela::kinematics::{Pose, SolverChoices};
 use biela::mechanism::{
     DriverId, DriverSource, Expression, Jet, Mechanism, Motion, Order, ParameterId, Variable,
-    large_angles,
+    whole_angles,
 };
 use pyo3::prelude::*;
 
@@ -69,12 +69,11 @@ pub(crate) type Start = (DriverId, Order, f64);
 
 impl Scenario {
     /// Returns warnings of angles that look like degrees.
-    pub(crate) fn large_angles(&self) -> Vec<String> {
+    pub(crate) fn whole_angles(&self) -> Vec<String> {
         let samples = self.samples.iter().filter_map(|samples| {
             let driver = &self.own.drivers[samples.driver.index()];
-            // Wrapped values have been put on the turn of the start.
-            let is_given = driver.coordinate.kind.is_angle() && !driver.wrapped;
-            let message = large_angles(&samples.orders[0]).filter(|_| is_given)?;
+            let is_angle = driver.coordinate.kind.is_angle();
+            let message = whole_angles(&samples.orders[0]).filter(|_| is_angle)?;
             Some(format!(
                 "drive: `{}`: {message}; NumPy has `np.radians`",
                 driver.name

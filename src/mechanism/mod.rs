@@ -97,9 +97,9 @@ pub(crate) use synonym::in_our_words;
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
-pub use unit_slip::large_angles;
+pub use unit_slip::whole_angles;
 #[cfg(feature = "cli")]
-pub(crate) use unit_slip::{is_plain, large_angle, large_length, large_velocity};
+pub(crate) use unit_slip::{is_plain, large_angle, large_angles, large_length, large_velocity};
 #[cfg(feature = "cli")]
 pub(crate) use wording::quoted;
 #[cfg(any(feature = "drawing", feature = "fmi"))]

@@ -21,17 +21,21 @@ pub(crate) fn large_angle(angle: f64) -> Option<String> {
     (angle.abs() > TAU).then(|| format!("an angle of {number} rad is {degrees:.1} deg"))
 }
 
-/// Says that samples of an angle \[rad\] look like degrees: more than a turn at the start, or up to
-/// more than a turn in whole numbers, or from a whole number to whole right angles. `None` for any
-/// others.
+/// Says that samples of an angle \[rad\] look like degrees: more than a turn at the start, or
+/// [whole angles](whole_angles). `None` for any others.
+pub(crate) fn large_angles(samples: &[f64]) -> Option<String> {
+    whole_angles(samples).or_else(|| large_angle(*samples.first()?))
+}
+
+/// Says that samples of an angle \[rad\] look like degrees by their digits: up to more than a turn in
+/// whole numbers, or from a whole number to whole right angles. `None` for any others.
 #[must_use]
-pub fn large_angles(samples: &[f64]) -> Option<String> {
+pub fn whole_angles(samples: &[f64]) -> Option<String> {
     let is_whole = samples.iter().all(|sample| sample.fract() == 0.0);
     let larger = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
     let largest = samples.iter().fold(0.0, larger);
-    let first = *samples.first()?;
-    let is_range = first.fract() == 0.0 && largest % RIGHT_ANGLE == 0.0;
-    large_angle(if is_whole || is_range { largest } else { first })
+    let is_range = samples.first()?.fract() == 0.0 && largest % RIGHT_ANGLE == 0.0;
+    large_angle(largest).filter(|_| is_whole || is_range)
 }
 
 /// Says that a velocity \[rad/s\] of whole right angles looks like degrees; `None` for any other.
@@ -105,6 +109,8 @@ mod tests {
             (vec![], false),
         ] {
             assert_eq!(large_angles(&samples).is_some(), is_suspect, "{samples:?}");
+            let is_whole = is_suspect && samples[0].fract() == 0.0;
+            assert_eq!(whole_angles(&samples).is_some(), is_whole, "{samples:?}");
         }
         for (velocity, is_suspect) in [
             (90.0, true),
