@@ -65,7 +65,7 @@ test: setup ## run all tests: Rust, documentation, FMPy
 	fi
 	$(BUILD)
 	$(MODULE)
-	$(PYTHON) -m pytest tests/fmpy tests/python
+	$(PYTHON) -m pytest --numprocesses auto --dist loadfile tests/fmpy tests/python
 
 bench: setup build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
 	$(CARGO) bench --package yardstick --locked

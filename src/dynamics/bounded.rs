@@ -146,19 +146,24 @@ mod tests {
 
     const PUSH: [f64; 2] = [0.0, f64::INFINITY];
 
+    fn assert_force(w: &DMatrix<f64>, b: f64, bounds: [f64; 2], force: f64) {
+        let found = solve(w, &[b], &[bounds])[0];
+        assert!((found - force).abs() < 1e-14, "{found} {force}");
+    }
+
     #[test]
     fn a_contact_pushes_or_opens() {
         let w = DMatrix::from_element(1, 1, 0.5);
-        assert!((solve(&w, &[-9.81], &[PUSH])[0] - 19.62).abs() < 1e-14);
-        assert_eq!(solve(&w, &[9.81], &[PUSH])[0], 0.0);
+        assert_force(&w, -9.81, PUSH, 19.62);
+        assert_force(&w, 9.81, PUSH, 0.0);
     }
 
     #[test]
     fn friction_sticks_within_its_limit() {
         let w = DMatrix::from_element(1, 1, 1.0);
-        assert_eq!(solve(&w, &[1.5], &[[-2.0, 2.0]])[0], -1.5);
-        assert_eq!(solve(&w, &[2.5], &[[-2.0, 2.0]])[0], -2.0);
-        assert_eq!(solve(&w, &[-2.5], &[[-2.0, 2.0]])[0], 2.0);
+        assert_force(&w, 1.5, [-2.0, 2.0], -1.5);
+        assert_force(&w, 2.5, [-2.0, 2.0], -2.0);
+        assert_force(&w, -2.5, [-2.0, 2.0], 2.0);
     }
 
     /// Two frictions on one coordinate: neither alone holds it, both do.

@@ -165,7 +165,7 @@ impl PassiveForces {
                 },
                 Load::Coordinate { coordinate, law } => {
                     let stop = law.as_ref().and_then(|law| law.stop.clone());
-                    (coordinate, Cause::Elastic(stop?))
+                    (coordinate, Cause::Elastic(*stop?))
                 }
                 Load::Marker { .. } => return None,
             };

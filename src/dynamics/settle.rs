@@ -135,7 +135,8 @@ impl Equations {
         Ok(())
     }
 
-    /// Moves coordinates that are beyond a rigid stop back to it, by no more than an instant is known.
+    /// Moves coordinates that are beyond a rigid stop by more than rounding back to it: a host finds an
+    /// instant less well.
     fn push_out(
         &mut self,
         solver: &mut Solver,
@@ -146,7 +147,7 @@ impl Equations {
         for Contact { force, mode } in self.contacts() {
             let at = &self.point.passive[force];
             let limit = at.bounds[usize::from(mode == Mode::AtMax)];
-            if mode.sign() * (at.coordinate.value - limit) < 0.0 {
+            if mode.sign() * (at.coordinate.value - limit) < -1.5 * at.rounding {
                 self.passive.modes[force] = mode;
                 self.passive.anchors[force] = limit;
             }
@@ -463,7 +464,7 @@ impl Equations {
                 }
                 // At its limit friction pushes against the motion that begins.
                 let grows = match low < high {
-                    true => force == low,
+                    true => force < 0.0,
                     false => at.coordinate.second() > 0.0,
                 };
                 self.passive.modes[k] = if grows { Mode::Growing } else { Mode::Falling };

@@ -26,7 +26,7 @@ pub(super) fn factorise(w: &mut DMatrix<f64>, order: usize) {
     for column in 0..order {
         let square = |k: usize| w[(column, k)] * w[(column, k)];
         let pivot = w[(column, column)] - (0..column).map(square).sum::<f64>();
-        let is_dependent = !(pivot > DEPENDENT * w[(column, column)]);
+        let is_dependent = pivot.is_nan() || pivot <= DEPENDENT * w[(column, column)];
         w[(column, column)] = match is_dependent {
             true => f64::INFINITY,
             false => pivot.sqrt(),

@@ -256,13 +256,14 @@ impl Function {
     /// Returns the time from the start of a step at which the function is a little below zero; a secant
     /// counts the value at the start with a weight.
     fn zero(&self, after: &Self, h: f64, slack: f64, weight: f64) -> f64 {
-        let aim = -0.5 * slack;
+        // A bounce ends where it began, so that it gains no height.
+        let aim = (-0.5 * slack).min(self.value);
         if self.rate.is_some() {
             let last = match after.value < -slack {
                 true => 1.0,
                 false => self.lowest(after, h),
             };
-            return h * bisect(0.0, last, |part| self.between(after, h, part) > aim);
+            return h * bisect(1e-6, last, |part| self.between(after, h, part) > aim);
         }
         let value = self.value * weight;
         h * (value - aim) / (value - after.value)

@@ -62,9 +62,9 @@ pub struct ForceLaw {
     /// Coefficient of a damper \[N s/m or N m s/rad\].
     pub damping: Option<Expression>,
     /// Elastic stop.
-    pub stop: Option<ElasticStop>,
+    pub stop: Option<Box<ElasticStop>>,
     /// Friction that never sticks.
-    pub friction: Option<RegularisedFriction>,
+    pub friction: Option<Box<RegularisedFriction>>,
 }
 
 /// A stop that yields: beyond its limits a spring and a damper push the coordinate back, and never

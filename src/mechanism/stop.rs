@@ -94,7 +94,7 @@ impl Stop {
                     stiffness: stiffness.clone(),
                     damping: damping.clone(),
                 };
-                let stop = Some(stop);
+                let stop = Some(Box::new(stop));
                 Load::Coordinate {
                     coordinate,
                     law: Some(ForceLaw {

@@ -208,47 +208,45 @@ fn indicators(instance: &mut Instance) -> [f64; 4] {
 
 #[test]
 fn event_indicators_tell_stops_and_friction_in_model_exchange() {
-    for version in [Version::Fmi2] {
-        let heard = Heard::default();
-        let model = MechanismModel::new(free(), Interface::ModelExchange).expect("it assembles");
-        let instance = FmiInstance::of_version(version, model, Box::new(heard.clone()), true);
-        let mut instance = started(instance);
-        let go = |instance: &mut Instance, time: f64, states: [f64; 2]| {
-            instance.set_time(time).expect("legal");
-            instance.set_continuous_states(&states).expect("legal");
-            let derivatives = instance.derivatives_of_states(2).expect("known");
-            derivatives.last().expect("two")
-        };
-        let event = |instance: &mut Instance| {
-            let completed = instance.completed_integrator_step().expect("legal");
-            assert!(!completed.must_end);
-            instance.enter_event_mode().expect("legal");
-            let event = instance.new_discrete_states().expect("it goes on");
-            instance.enter_continuous_time_mode().expect("legal");
-            assert!(!event.must_end);
-            let states: Vec<f64> = instance.continuous_states(2).expect("known").collect();
-            (event.states, states)
-        };
-        // Sliding: 0.5 N on 1 kg.
-        assert_eq!(go(&mut instance, 0.1, [0.1, 0.9]), -0.5);
-        let [_, wall, sliding, _] = indicators(&mut instance);
-        assert!((wall - 0.02).abs() < 1e-12 && (sliding - 0.9).abs() < 1e-12);
-        // Beyond the wall, as far as a host finds its instant: the nut is stopped, and rests.
-        go(&mut instance, 0.12, [0.12 + 1e-12, 0.8]);
-        let [_, wall, ..] = indicators(&mut instance);
-        assert!(wall < 0.0, "{wall}");
-        let (change, states) = event(&mut instance);
-        assert_eq!(change, StateChange::Values);
-        assert!(
-            (states[0] - 0.12).abs() < 1e-15 && states[1] == 0.0,
-            "{states:?}"
-        );
-        assert_eq!(go(&mut instance, 0.2, [0.12, 0.0]), 0.0);
-        // Nothing changes at a further event.
-        let (change, again) = event(&mut instance);
-        assert_eq!((change, again), (StateChange::None, vec![0.12, 0.0]));
-        assert!(heard.take(Category::Error).is_empty());
-    }
+    let heard = Heard::default();
+    let model = MechanismModel::new(free(), Interface::ModelExchange).expect("it assembles");
+    let instance = FmiInstance::new(model, Box::new(heard.clone()), true);
+    let mut instance = started(instance);
+    let go = |instance: &mut Instance, time: f64, states: [f64; 2]| {
+        instance.set_time(time).expect("legal");
+        instance.set_continuous_states(&states).expect("legal");
+        let derivatives = instance.derivatives_of_states(2).expect("known");
+        derivatives.last().expect("two")
+    };
+    let event = |instance: &mut Instance| {
+        let completed = instance.completed_integrator_step().expect("legal");
+        assert!(!completed.must_end);
+        instance.enter_event_mode().expect("legal");
+        let event = instance.new_discrete_states().expect("it goes on");
+        instance.enter_continuous_time_mode().expect("legal");
+        assert!(!event.must_end);
+        let states: Vec<f64> = instance.continuous_states(2).expect("known").collect();
+        (event.states, states)
+    };
+    // Sliding: 0.5 N on 1 kg.
+    assert_eq!(go(&mut instance, 0.1, [0.1, 0.9]), -0.5);
+    let [_, wall, sliding, _] = indicators(&mut instance);
+    assert!((wall - 0.02).abs() < 1e-12 && (sliding - 0.9).abs() < 1e-12);
+    // Beyond the wall, as far as a host finds its instant: the nut is stopped, and rests.
+    go(&mut instance, 0.12, [0.12 + 1e-12, 0.8]);
+    let [_, wall, ..] = indicators(&mut instance);
+    assert!(wall < 0.0, "{wall}");
+    let (change, states) = event(&mut instance);
+    assert_eq!(change, StateChange::Values);
+    assert!(
+        (states[0] - 0.12).abs() < 1e-15 && states[1] == 0.0,
+        "{states:?}"
+    );
+    assert_eq!(go(&mut instance, 0.2, [0.12, 0.0]), 0.0);
+    // Nothing changes at a further event.
+    let (change, again) = event(&mut instance);
+    assert_eq!((change, again), (StateChange::None, vec![0.12, 0.0]));
+    assert!(heard.take(Category::Error).is_empty());
 }
 
 #[test]

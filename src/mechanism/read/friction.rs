@@ -71,10 +71,10 @@ impl<'a> Context<'a> {
             Some(speed) => Load::Coordinate {
                 coordinate,
                 law: Some(ForceLaw {
-                    friction: Some(RegularisedFriction {
+                    friction: Some(Box::new(RegularisedFriction {
                         law,
                         speed: speed.expression,
-                    }),
+                    })),
                     ..ForceLaw::default()
                 }),
             },

@@ -43,7 +43,10 @@ fn friction_adds_to_the_effort_against_the_motion() {
             true => 1.4,
             false => 1.4 + velocity.signum() * friction(velocity.abs()),
         };
-        assert!((solution.force(EFFORT) - wanted).abs() < 1e-14, "{velocity}");
+        assert!(
+            (solution.force(EFFORT) - wanted).abs() < 1e-14,
+            "{velocity}"
+        );
         let own = solution.force(ForceQuantity::Applied(0, 0));
         assert!((own - (1.4 - wanted)).abs() < 1e-14, "{velocity}");
     }

@@ -98,7 +98,7 @@ fn a_block_slides_to_rest() {
         &[(v / a, EventKind::Sticks)],
         [v * v / (2.0 * a), 0.0],
     );
-    assert_eq!(run.state()[1], 0.0);
+    assert_eq!(run.state()[1].to_bits(), 0);
 }
 
 /// On a slope a block goes up, rests where friction holds it, or comes back.
@@ -207,7 +207,13 @@ fn a_ball_comes_to_rest() {
         assert_near(rest.time, until - 1.0);
         let (mut time, mut speed) = (first, speed);
         for impact in impacts {
-            assert_events(&[*impact], &[(time, EventKind::Impact { speed })]);
+            let EventKind::Impact { speed: met } = impact.kind else {
+                panic!("{impact:?}")
+            };
+            assert_near(impact.time, time);
+            // Heights are known to some roundings.
+            let error = (met * met - speed * speed).abs();
+            assert!(error < MARK * speed + 2.0 * G * 1e-14, "{met} {speed}");
             speed *= restitution;
             time += 2.0 * speed / G;
         }
@@ -404,7 +410,7 @@ bearing = { of = "swing", force = 0.2, static = 0.3, stribeck = 0.05, viscous = 
     let [angle, speed] = run.state()[..] else {
         panic!("one freedom")
     };
-    assert_eq!(speed, 0.0);
+    assert_eq!(speed.to_bits(), 0);
     // The weight's torque there is below the limit of sticking.
     assert!((0.5 * G * angle.cos()).abs() <= 0.3, "{angle}");
 }

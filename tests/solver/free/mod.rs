@@ -10,9 +10,11 @@
 //! | `published` | Andrews' mechanism, the problems of the IFToMM library |
 //! | `invariance` | other freedoms, names, orders, places; time reversed |
 //! | `refused` | what has no inertia, what meets a dead point |
-//! | `stops` | weights that fall to a stop |
+//! | `events` | stops and friction against closed forms |
+//! | `chains` | random chains with stops and friction |
 //! | `state` | saved and restored |
 
+mod chains;
 mod closed_form;
 mod events;
 mod invariance;

@@ -1,0 +1,131 @@
+//! Random chains of rods with stops and friction: what must hold for any of them.
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use super::run::{Fed, Run};
+use crate::common::parse;
+
+/// Numbers from 0 to 1, the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.number()
+    }
+}
+
+/// A chain of one to three rods that hangs from a slider or from ground, each joint with a stop, with
+/// friction, with both or with neither.
+fn chain(random: &mut Random) -> String {
+    let has_slider = random.number() < 0.5;
+    let rods = 1 + (random.number() * 3.0) as usize;
+    let mut bodies = String::new();
+    let mut joints = String::new();
+    let mut freedoms = String::new();
+    let mut stops = String::new();
+    let mut friction = String::new();
+    let mut add_contacts = |random: &mut Random, name: &str, reach: f64| {
+        if random.number() < 0.7 {
+            let (low, high) = (random.between(-reach, -0.2), random.between(0.2, reach));
+            let kind = match random.number() < 0.6 {
+                true => format!("restitution = {:.2}", random.between(0.0, 0.9)),
+                false => format!(
+                    "stiffness = {:.1}, damping = {:.2}",
+                    random.between(50.0, 2000.0),
+                    random.between(0.0, 5.0)
+                ),
+            };
+            writeln!(
+                stops,
+                "stop_{name} = {{ of = \"{name}\", min = {low:.3}, max = {high:.3}, {kind} }}"
+            )
+            .expect("a string takes it");
+        }
+        if random.number() < 0.7 {
+            let coulomb = random.between(0.01, 2.0);
+            let sticking = coulomb * random.between(1.0, 1.5);
+            writeln!(friction, "friction_{name} = {{ of = \"{name}\", force = {coulomb:.3}, static = {sticking:.4} }}").expect("a string takes it");
+        }
+    };
+    let mut last = "ground.O".to_owned();
+    if has_slider {
+        writeln!(
+            bodies,
+            "[bodies.slider]\nmass = {:.2}\nmarkers = {{ O = [0, 0] }}",
+            random.between(0.5, 3.0)
+        )
+        .expect("a string takes it");
+        writeln!(
+            joints,
+            "guide = {{ type = \"translational\", markers = [\"ground.O\", \"slider.O\"] }}"
+        )
+        .expect("a string takes it");
+        writeln!(freedoms, "way = {{ coordinate = \"x\", markers = [\"ground.O\", \"slider.O\"], start = 0, velocity = {:.2} }}", random.between(-1.0, 1.0)).expect("a string takes it");
+        add_contacts(random, "way", 0.6);
+        last = "slider.O".to_owned();
+    }
+    for rod in 0..rods {
+        let length = random.between(0.2, 0.8);
+        writeln!(bodies, "[bodies.rod{rod}]\nmass = {:.2}\ninertia = {:.4}\ncenter = [{:.3}, 0]\nmarkers = {{ A = [0, 0], B = [{length:.3}, 0] }}", random.between(0.3, 2.0), random.between(0.005, 0.05), 0.5 * length).expect("a string takes it");
+        writeln!(
+            joints,
+            "pin{rod} = {{ type = \"revolute\", markers = [\"{last}\", \"rod{rod}.A\"] }}"
+        )
+        .expect("a string takes it");
+        writeln!(freedoms, "turn{rod} = {{ coordinate = \"angle\", markers = [\"{last}\", \"rod{rod}.A\"], start = {:.3}, velocity = {:.2} }}", random.between(-0.19, 0.19), random.between(-3.0, 3.0)).expect("a string takes it");
+        add_contacts(random, &format!("turn{rod}"), 1.5);
+        last = format!("rod{rod}.B");
+    }
+    format!(
+        "format = 1\nname = \"chain\"\n[ground.markers]\nO = [0, 0]\n{bodies}[joints]\n{joints}[freedoms]\n{freedoms}[stops]\n{stops}[friction]\n{friction}"
+    )
+}
+
+/// The energy is that of the work done, stops are not passed, and events come to no heap.
+#[test]
+fn chains_keep_their_balances() {
+    for case in 0..30 {
+        let mut random = Random(case);
+        let text = chain(&mut random);
+        let mut run = Run::new(&parse(&text), 1e-9, Fed::default());
+        let begun = Instant::now();
+        let mut events = 0;
+        for step in 1..=10 {
+            if let Err(error) = run.try_to(0.1 * f64::from(step)) {
+                panic!("case {case}: {error}\n{text}");
+            }
+            events += run.free.events().count();
+            let [values, ..] = run.freedoms();
+            let mechanism = run.solver.mechanism();
+            for stop in mechanism.stops.iter().filter(|stop| stop.is_rigid()) {
+                let freedom = mechanism
+                    .driver_id(stop.subject())
+                    .expect("it is of a freedom");
+                let value = values[freedom.index()];
+                let [least, most] = stop.limits(&run.solver.pose().parameters);
+                assert!(
+                    (least - 1e-12..=most + 1e-12).contains(&value),
+                    "case {case}: {value} beyond {}\n{text}",
+                    stop.name
+                );
+            }
+        }
+        assert!(
+            run.energy_error < 1e-6,
+            "case {case}: {}\n{text}",
+            run.energy_error
+        );
+        assert!(events < 2000, "case {case}: {events} events\n{text}");
+        // Far more than any takes, for what would not end.
+        assert!(begun.elapsed().as_secs() < 60, "case {case}\n{text}");
+    }
+}
