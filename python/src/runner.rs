@@ -292,10 +292,12 @@ impl Runner {
         let crossed = self.solver.crossed().iter();
         let crossed = crossed.map(|crossing| self.solver.describe_crossing(crossing));
         let texts = approach.map(|approach| approach.to_string()).into_iter();
-        texts
-            .chain(crossed)
-            .map(|text| format!("t = {} s: {text}", show_time(time)))
-            .collect()
+        let texts = texts.chain(crossed);
+        let texts = texts.map(|text| format!("t = {} s: {text}", show_time(time)));
+        let mechanism = self.solver.mechanism();
+        let events = self.free.iter_mut().flat_map(|(free, _)| free.events());
+        let events = events.map(|event| event.describe(mechanism));
+        texts.chain(events).collect()
     }
 
     /// Returns what is worth knowing of the forces at the pose: contacts that begin to pull.

@@ -484,8 +484,12 @@ impl Equations {
             }
             for k in frictions {
                 self.passive.modes[k] = Mode::Sticking;
-                if before[k] != Mode::Sticking {
-                    self.passive.anchors[k] = self.point.passive[k].coordinate.value;
+                let at = &self.point.passive[k];
+                let value = at.coordinate.value;
+                // A driver that jumps takes along what sticks.
+                let is_there = (value - self.passive.anchors[k]).abs() <= SLOW * at.rounding;
+                if before[k] != Mode::Sticking || !is_there {
+                    self.passive.anchors[k] = value;
                 }
             }
             return Ok(());

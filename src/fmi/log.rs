@@ -18,7 +18,7 @@ pub enum Category {
     Error,
     /// Messages of a call that returns `fmi2Fatal`.
     Fatal,
-    /// Initialization, reset, termination, FMU states, change points.
+    /// Initialization, reset, termination, FMU states, change points, stops and friction.
     Events,
     /// Iterations and sub-steps of each step.
     Solver,

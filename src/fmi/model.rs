@@ -270,7 +270,8 @@ pub trait Model: Sized {
     /// # Errors
     ///
     /// The states have no derivatives there.
-    fn change_states(&mut self) -> Result<StateChange, Failure> {
+    fn change_states(&mut self, log: &Logger) -> Result<StateChange, Failure> {
+        let _ = log;
         Ok(StateChange::None)
     }
 

@@ -51,6 +51,26 @@ pub enum PassiveCause {
     Friction(FrictionLaw),
 }
 
+impl PassiveCause {
+    /// Returns the fault of parameters for which it is none, as the end of a sentence.
+    #[must_use]
+    pub fn fault(&self, mechanism: &Mechanism, parameters: &[f64]) -> Option<&'static str> {
+        match self {
+            Self::Stop(stop) => {
+                let restitution = mechanism.stops[*stop].restitution(parameters);
+                let is_possible = (0.0..=1.0).contains(&restitution);
+                (!is_possible).then_some("has a `restitution` that is not from 0 to 1")
+            }
+            Self::Friction(law) => {
+                let value = |id: ParameterId| parameters[id.index()];
+                let [dry, sticking] = [law.coulomb.value(parameters), law.sticking(&value)];
+                let is_possible = dry >= 0.0 && sticking >= dry && law.viscous(&value) >= 0.0;
+                (!is_possible).then_some("has a negative force, or sticks with less than it slides")
+            }
+        }
+    }
+}
+
 /// Size of a generalized force: f = value − stiffness (c − free) − damping ċ, and those of an elastic
 /// stop and of friction.
 #[derive(Clone, Debug, Default)]

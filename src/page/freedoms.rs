@@ -53,7 +53,10 @@ impl Freedoms {
         let inputs = Inputs::new(solver.pose(), solution);
         let parameters = solver.pose().parameters.clone();
         self.motion.jump(solver, &inputs, &parameters)?;
-        self.motion.advance(solver, solution, &inputs, time)
+        let advanced = self.motion.advance(solver, solution, &inputs, time);
+        // A page shows the motion; its events are those of a run.
+        self.motion.events().for_each(drop);
+        advanced
     }
 
     /// Makes the solver that of the file's own coordinates, anywhere. Returns whether it was another

@@ -56,7 +56,7 @@ impl<M: Model> Instance<M> {
         }
         let must_end = self.course.terminated;
         let changed = match is_hosted && !must_end {
-            true => self.model.change_states(),
+            true => self.model.change_states(&self.logger),
             false => Ok(StateChange::None),
         };
         let states = changed.map_err(|failure| self.failed(Call::NewDiscreteStates, failure))?;

@@ -136,6 +136,7 @@ impl MechanismModel {
         *progress = progress.saturating_add(u32::try_from(taken).unwrap_or(u32::MAX));
         self.note_states();
         self.log_crossings(log);
+        self.log_events(log);
         moved.map_err(|error| Failure::Discarded(error.to_string()))
     }
 
@@ -247,7 +248,7 @@ impl MechanismModel {
     /// # Errors
     ///
     /// Freedoms have no acceleration there.
-    pub(super) fn settle_events(&mut self) -> Result<bool, Failure> {
+    pub(super) fn settle_events(&mut self, log: &Logger) -> Result<bool, Failure> {
         if !self
             .free
             .as_ref()
@@ -264,6 +265,7 @@ impl MechanismModel {
         };
         let before = states(&self.course);
         self.settle()?;
+        self.log_events(log);
         self.note_states();
         self.set_driver_rates(self.course.time, 0.0, 0.0);
         self.commit_pose();

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::MechanismModel;
 use super::monitor::Contradiction;
 use super::rule::Source;
+use crate::dynamics::FreeMotion;
 use crate::fmi::log::{Advice, Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
@@ -210,6 +211,17 @@ impl MechanismModel {
         if self.course.path_progress.crossings > 0 && log.wants(Category::Events) {
             for crossing in self.solver.crossed() {
                 let message = self.solver.describe_crossing(crossing);
+                log.write(Status::Ok, Category::Events, &message);
+            }
+        }
+    }
+
+    /// Logs the events of a free motion.
+    pub(super) fn log_events(&mut self, log: &Logger) {
+        let events = self.free.iter_mut().flat_map(FreeMotion::events);
+        for event in events {
+            if log.wants(Category::Events) {
+                let message = event.describe(&self.mechanism);
                 log.write(Status::Ok, Category::Events, &message);
             }
         }

@@ -494,8 +494,8 @@ impl Model for MechanismModel {
         self.wants_exchange() || self.wants_projection()
     }
 
-    fn change_states(&mut self) -> Result<StateChange, Failure> {
-        let settled = self.settle_events()?;
+    fn change_states(&mut self, log: &Logger) -> Result<StateChange, Failure> {
+        let settled = self.settle_events(log)?;
         let exchanged = self.exchange_states()?;
         Ok(match (exchanged, settled) {
             (true, _) => StateChange::Exchange,

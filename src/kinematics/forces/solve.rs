@@ -272,6 +272,14 @@ impl Forces {
         self.parameters.extend_from_slice(now);
         self.has_parameters = false;
         self.masses.check(&self.mechanism)?;
+        for force in &self.mechanism.forces {
+            if let Load::Passive { cause, .. } = &force.load
+                && let Some(reason) = cause.fault(&self.mechanism, now)
+            {
+                let force = force.name.clone();
+                return Err(Error::NoForce { force, reason });
+            }
+        }
         self.has_parameters = true;
         Ok(())
     }

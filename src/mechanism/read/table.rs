@@ -208,6 +208,11 @@ pub(super) const fn key_name(identifier: &'static str) -> &'static str {
     }
 }
 
+/// Help for a key that other programs have in their joints.
+const FRICTION: &str = "friction acts along a coordinate, in a section of its own: `[friction]` with \
+                        `pin = { coordinate = \"angle\", markers = [\"ground.O\", \"rod.O\"], \
+                        force = 0.1 }`";
+
 impl<'a> Context<'a> {
     /// Reads a table; reports unknown, missing and conflicting keys.
     pub(super) fn table<T: Keys<'a>>(&mut self, fields: &Fields<'a>) -> T {
@@ -231,7 +236,10 @@ impl<'a> Context<'a> {
                 if let Some(meant) = names::nearest(name, &known) {
                     self.misspelt_keys.insert((fields.place.start, meant));
                 }
-                let help = names::help(name, &known, &[]);
+                let help = match name {
+                    "friction" => Some(FRICTION.to_owned()),
+                    _ => names::help(name, &known, &[]),
+                };
                 self.error(code::UNKNOWN_KEY, key.span(), message).help = help;
             }
         }

@@ -6,6 +6,7 @@
 use std::f64::consts::PI;
 
 use biela::dynamics::{Event, EventKind};
+use biela::mechanism::Jet;
 
 use super::run::{Fed, Run};
 use crate::common::parse;
@@ -433,5 +434,82 @@ fn a_saved_motion_goes_on_with_the_same_bits() {
         assert_eq!(run.state(), first);
         run.solver.restore(&pose);
         run.free.resume(&run.solver, &state).expect("its own");
+    }
+}
+
+/// A belt that jumps takes along what sticks to it in no time: the block stays where it is, and goes on
+/// with the belt.
+#[test]
+fn a_driver_that_jumps_leaves_what_sticks() {
+    let text = r#"
+format = 1
+name = "belt"
+[ground.markers]
+O = [0, 0]
+[bodies.belt]
+markers = { B = [0, 0] }
+[bodies.block]
+mass = 1
+markers = { C = [0, 0] }
+[joints]
+block_guide = { type = "translational", markers = ["ground.O", "block.C"] }
+belt_guide = { type = "translational", markers = ["ground.O", "belt.B"] }
+[drivers]
+belt_way = { coordinate = "x", markers = ["ground.O", "belt.B"], start = 0 }
+[freedoms]
+way = { coordinate = "x", markers = ["ground.O", "block.C"], start = 0 }
+[friction]
+rubber = { coordinate = "x", markers = ["belt.B", "block.C"], force = 2 }
+"#;
+    let before = Fed {
+        driver: |_, time| Jet::new(0.1 * time, [0.1, 0.0]),
+        ..Fed::default()
+    };
+    let after = Fed {
+        driver: |_, time| Jet::new(0.5 + 0.1 * time, [0.1, 0.0]),
+        ..Fed::default()
+    };
+    let mechanism = parse(text);
+    let mut run = Run::new(&mechanism, TOLERANCE, before);
+    // 2 N on 1 kg: after 0.05 s the block is as fast as the belt.
+    let events = played(&mut run, 1.0, 1);
+    assert_events(&events, &[(0.05, EventKind::Sticks)]);
+    let place = run.state()[0];
+    run.fed = after;
+    let parameters = run.solver.pose().parameters.clone();
+    run.free
+        .jump(&mut run.solver, &run.fed, &parameters)
+        .expect("nothing is in the way");
+    let events = played(&mut run, 2.0, 1);
+    assert_eq!(events, []);
+    assert_near(run.state()[0], place + 0.1);
+}
+
+/// Numbers that a host sets may make a stop or friction impossible: it is named.
+#[test]
+fn impossible_numbers_are_named() {
+    let text = slider(
+        0.0,
+        0.0,
+        1.0,
+        "[parameters]\nmu = 1\ne = 0.5\n[stops]\nwall = { of = \"way\", max = 1, restitution = \"e\" }\n\
+         [friction]\nrail = { of = \"way\", force = \"mu\" }",
+    );
+    for (parameters, message) in [
+        (
+            [-1.0, 0.5],
+            "force `rail` has a negative force, or sticks with less than it slides",
+        ),
+        (
+            [1.0, 1.5],
+            "force `wall` has a `restitution` that is not from 0 to 1",
+        ),
+    ] {
+        let mut run = Run::new(&parse(&text), TOLERANCE, Fed::default());
+        let refused = run.free.jump(&mut run.solver, &run.fed, &parameters);
+        assert_eq!(
+            refused.map_err(|error| error.to_string()),
+            Err(message.to_owned())
+        );
     }
 }
