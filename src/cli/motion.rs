@@ -15,6 +15,8 @@ pub(super) struct Motion {
     /// Singular positions that are near or were passed, contacts that pull, drivers beyond their
     /// limits, ropes off their pulleys: not told yet.
     pub(super) notices: Vec<Message>,
+    /// Times of all events of the free motion \[s\].
+    pub(super) events: Vec<f64>,
     path: Path,
     signals: Signals,
     free: Option<FreeMotion>,
@@ -45,6 +47,7 @@ impl Motion {
             off_pulleys: vec![false; solver.mechanism().pulleys()],
             solver,
             notices: Vec::new(),
+            events: Vec::new(),
             path,
             signals,
             free: None,
@@ -135,8 +138,10 @@ impl Motion {
                 free.advance(solver, solution, &part, until)
             });
             let mechanism = solver.mechanism();
-            let events = free.events().map(|event| event.describe(mechanism));
-            self.notices.extend(events.map(Message::Note));
+            for event in free.events() {
+                self.events.push(event.time);
+                self.notices.push(Message::Note(event.describe(mechanism)));
+            }
             moved.map_err(|stop| stop.to_string())?;
             self.tell_passed(time);
         }

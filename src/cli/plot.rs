@@ -94,7 +94,7 @@ impl Plot {
 
     /// Returns the chart: one panel per unit, positions first and forces last; angles in degrees.
     /// Drivers have panels of their own, where their ramps leave the results their scale.
-    fn chart(self, mechanism: &Mechanism) -> Chart {
+    fn chart(self, mechanism: &Mechanism, events: &[f64]) -> Chart {
         let looks = looks(&self.columns, mechanism);
         let mut panels: Vec<((Unit, bool), Panel)> = Vec::new();
         let lines = self.columns.into_iter().zip(self.values).zip(looks);
@@ -112,15 +112,16 @@ impl Plot {
             let dimension = unit.dimension;
             (dimension.kg, -dimension.s, dimension.rad, !is_driver)
         });
-        let (x, at) = match self.over {
+        let (x, at, instants) = match self.over {
             Some((column, values)) => {
                 let Axis { unit, .. } = axis(column.unit);
                 let label = column.name.trim_end_matches(".position").to_owned();
-                (Axis { label, unit }, displayed(values, column.unit))
+                let values = displayed(values, column.unit);
+                (Axis { label, unit }, values, Vec::new())
             }
             None => {
                 let [label, unit] = ["time", "s"].map(str::to_owned);
-                (Axis { label, unit }, self.times)
+                (Axis { label, unit }, self.times, events.to_vec())
             }
         };
         Chart {
@@ -128,6 +129,7 @@ impl Plot {
             description: mechanism.description.clone(),
             x,
             at,
+            instants,
             panels: panels.into_iter().map(|(_, panel)| panel).collect(),
         }
     }
@@ -208,7 +210,7 @@ impl Recorder for Plot {
             self.leave_out_constants();
         }
         let (path, format) = (self.path.clone(), self.format);
-        let sheet = Sheet::chart(&self.chart(motion.solver.mechanism()));
+        let sheet = Sheet::chart(&self.chart(motion.solver.mechanism(), &motion.events));
         format.write_chart(&path, &sheet)
     }
 }

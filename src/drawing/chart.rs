@@ -17,6 +17,8 @@ pub struct Chart {
     pub x: Axis,
     /// Values of x, common to all lines.
     pub at: Vec<f64>,
+    /// Values of x at which something happens, such as impacts: dotted lines.
+    pub instants: Vec<f64>,
     /// The panels from top to bottom.
     pub panels: Vec<Panel>,
 }
@@ -75,6 +77,7 @@ const STEPS: f64 = 2.0;
 const DIAMOND: f64 = 3.2;
 const CURVE: f64 = 1.5;
 const FRAME: f64 = 0.9;
+const INSTANTS: &[f64] = &[1.0, 2.5];
 const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.5], &[8.0, 2.5, 2.0, 2.5]];
 
 impl Sheet {
@@ -235,6 +238,21 @@ impl Plot<'_> {
         }
         let stroke = Stroke::solid(Colour::GROUND.tint(0.25), FRAME);
         self.line(Layer::Grid, grid, stroke);
+        let mut instants = Outline::default();
+        let [first, last] = self.x;
+        for &value in &self.chart.instants {
+            if (first..=last).contains(&value) {
+                let x = self.on_x(value);
+                instants.add_line(&[Point::new(x, top), Point::new(x, bottom)]);
+            }
+        }
+        if !instants.0.is_empty() {
+            let stroke = Stroke {
+                dashes: INSTANTS,
+                ..Stroke::solid(Colour::GROUND.tint(0.8), FRAME)
+            };
+            self.line(Layer::Grid, instants, stroke);
+        }
         if low < 0.0 && high > 0.0 {
             let zero = [Point::new(left, on_y(0.0)), Point::new(right, on_y(0.0))];
             let stroke = Stroke::solid(Colour::GROUND.tint(0.7), FRAME);
@@ -357,6 +375,36 @@ fn thinned(points: &[Point]) -> Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn instants_in_the_range_are_dotted() {
+        let axis = || Axis {
+            label: "time".to_owned(),
+            unit: "s".to_owned(),
+        };
+        let chart = |instants| Chart {
+            title: String::new(),
+            description: String::new(),
+            x: axis(),
+            at: vec![0.0, 1.0],
+            instants,
+            panels: vec![Panel {
+                y: axis(),
+                lines: Vec::new(),
+            }],
+        };
+        let dotted = |instants: Vec<f64>| {
+            let marks = Sheet::chart(&chart(instants)).marks;
+            let dotted = marks
+                .iter()
+                .filter(|mark| mark.stroke.is_some_and(|stroke| stroke.dashes == INSTANTS));
+            dotted
+                .map(|mark| mark.outline.flattened().len())
+                .sum::<usize>()
+        };
+        assert_eq!(dotted(Vec::new()), 0);
+        assert_eq!(dotted(vec![-0.1, 0.0, 0.3, 1.0, 1.1]), 3);
+    }
 
     #[test]
     fn thinning_keeps_what_can_be_seen() {

@@ -494,6 +494,7 @@ fn chart(
         at: (range.samples.iter())
             .map(|sample| sample.driver * x_unit.display_factor())
             .collect(),
+        instants: Vec::new(),
         panels,
     }
 }

@@ -26,6 +26,7 @@ fn chart() -> Chart {
         title: "chart".to_owned(),
         description: String::new(),
         x: axis("time", "s"),
+        instants: Vec::new(),
         panels: vec![
             Panel {
                 y: axis("position", "m"),
