@@ -13,7 +13,7 @@ use crate::kinematics::{
     Blocked, Curve, Direction, EquationsOfMotion, ForceQuantity, Forces, KnownMotion, Path, Pose,
     Rates, Reason, Solution, Solver, SolverChoices,
 };
-use crate::mechanism::{DriverId, Jet, Mechanism};
+use crate::mechanism::{DriverId, Jet, Mechanism, Order};
 
 /// A freedom feels no inertia of its own if this part of √M ∂q/∂u is left of it where those of others
 /// are taken out: some hundred roundings.
@@ -454,6 +454,24 @@ impl Equations {
         &self.factor
     }
 
+    /// Changes values or velocities of the freedoms so that held coordinates have those at which they are
+    /// held.
+    pub(super) fn correct(&mut self, order: Order, x: &mut [f64]) {
+        let Self {
+            passive,
+            point,
+            factor,
+            accelerations: changes,
+            ..
+        } = self;
+        changes.fill(0.0);
+        passive.correct(&point.passive, order, changes);
+        ascend(factor, changes);
+        for (x, change) in x.iter_mut().zip(changes) {
+            *x += *change;
+        }
+    }
+
     /// Writes velocities and accelerations of the freedoms, and the power of all that acts on the
     /// bodies but gravity, at the solver's pose.
     pub(super) fn write(&mut self, solver: &mut Solver, dx: &mut [f64]) -> Result<(), Error> {
@@ -519,7 +537,7 @@ impl Equations {
         if passive.holds() {
             passive.prepare(freedoms, factor);
             accelerations.fill(0.0);
-            passive.correct(|k| -at[k].coordinate.second(), accelerations);
+            passive.correct(at, Order::Acceleration, accelerations);
             passive.exert(at, motion);
             ascend(factor, accelerations);
             for (freedom, change) in freedoms.iter().zip(&*accelerations) {

@@ -11,7 +11,8 @@ use super::triangular::{ascend, descend, factorise};
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::{EquationsOfMotion, Sensitivity, Solver};
 use crate::mechanism::{
-    DriverId, ElasticStop, Expression, FrictionLaw, Jet, Load, Mechanism, ParameterId, PassiveCause,
+    DriverId, ElasticStop, Expression, FrictionLaw, Jet, Load, Mechanism, Order, ParameterId,
+    PassiveCause,
 };
 
 /// Gap and speed up to which a coordinate is at a stop and at rest, in radians or sizes of the
@@ -352,14 +353,25 @@ impl PassiveForces {
         }
     }
 
-    /// Finds the forces or impulses that change the held coordinates by `wanted`, and adds the changes
-    /// of the freedoms that they make to `changes`, before [`ascend`].
-    pub(super) fn correct(&mut self, wanted: impl Fn(usize) -> f64, changes: &mut [f64]) {
-        let count = self.holding.len();
-        let forces = &mut self.forces[..count];
-        for (force, k) in forces.iter_mut().zip(&self.holding) {
+    /// Finds the forces or impulses that bring value, velocity or acceleration of the held coordinates to
+    /// what they are held at, and adds the changes of the freedoms that they make to `changes`, before
+    /// [`ascend`].
+    pub(super) fn correct(&mut self, at: &[Passive], order: Order, changes: &mut [f64]) {
+        let wanted = |k: usize| match order {
+            Order::Position => self.anchors[k] - at[k].coordinate.value,
+            Order::Velocity => -at[k].coordinate.first(),
+            Order::Acceleration => -at[k].coordinate.second(),
+        };
+        for (force, k) in self.forces.iter_mut().zip(&self.holding) {
             *force = wanted(*k);
         }
+        self.exert_on(changes);
+    }
+
+    /// Finds the forces that make the changes that stand in their places, and adds those of the freedoms
+    /// to `changes`.
+    fn exert_on(&mut self, changes: &mut [f64]) {
+        let forces = &mut self.forces[..self.holding.len()];
         descend(&self.factor, forces);
         ascend(&self.factor, forces);
         for (column, force) in forces.iter().enumerate() {
@@ -405,14 +417,12 @@ impl PassiveForces {
         if !self.holds() {
             return;
         }
-        let columns = self.holding.iter().enumerate();
-        let mut wanted = vec![0.0; self.list.len()];
-        for (column, &k) in columns {
+        for (column, &k) in self.holding.iter().enumerate() {
             let of_freedoms = self.columns.column(column);
             let of_freedoms = of_freedoms.iter().zip(&*changes).map(|(c, x)| c * x);
-            wanted[k] = -coordinates[k].second() - of_freedoms.sum::<f64>();
+            self.forces[column] = -coordinates[k].second() - of_freedoms.sum::<f64>();
         }
-        self.correct(|k| wanted[k], changes);
+        self.exert_on(changes);
         for (&k, &force) in self.holding.iter().zip(&self.forces) {
             forces[k] = force;
         }

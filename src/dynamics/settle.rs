@@ -9,7 +9,7 @@ use super::given::Given;
 use super::passive::{Cause, Mode};
 use super::triangular::ascend;
 use crate::kinematics::{Solver, StopLimit};
-use crate::mechanism::{Force, Load, Mechanism, fixed, shown};
+use crate::mechanism::{Force, Load, Mechanism, Order, fixed, shown};
 
 /// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
 const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
@@ -104,11 +104,8 @@ impl Equations {
             return Ok(());
         }
         self.project_places(solver, given, time, x)?;
-        let rates: Vec<f64> = (self.point.passive.iter())
-            .map(|at| -at.coordinate.first())
-            .collect();
         let count = self.freedoms.len();
-        self.correct(|k| rates[k], &mut x[count..2 * count]);
+        self.correct(Order::Velocity, &mut x[count..2 * count]);
         Ok(())
     }
 
@@ -124,19 +121,20 @@ impl Equations {
         for _ in 0..MOST_CORRECTIONS {
             self.evaluate(solver, given, time, x)?;
             let Self { passive, point, .. } = self;
-            let off = |k: usize| passive.anchors[k] - point.passive[k].coordinate.value;
-            let mut held = (0..point.passive.len()).filter(|&k| passive.is_held(k));
-            if held.all(|k| off(k).abs() <= 0.1 * point.passive[k].rounding) {
+            let is_there = |k: usize| {
+                let at = &point.passive[k];
+                (passive.anchors[k] - at.coordinate.value).abs() <= 0.1 * at.rounding
+            };
+            if (0..point.passive.len()).all(|k| !passive.is_held(k) || is_there(k)) {
                 break;
             }
-            let off: Vec<f64> = (0..point.passive.len()).map(off).collect();
-            self.correct(|k| off[k], &mut x[..count]);
+            self.correct(Order::Position, &mut x[..count]);
         }
         Ok(())
     }
 
-    /// Moves coordinates that are beyond a rigid stop by more than rounding back to it: a host finds an
-    /// instant less well.
+    /// Moves coordinates that are beyond a rigid stop by as much as rounding back to it, as a host finds
+    /// an instant less well; what sticks then does so at a new place.
     fn push_out(
         &mut self,
         solver: &mut Solver,
@@ -147,7 +145,7 @@ impl Equations {
         for Contact { force, mode } in self.contacts() {
             let at = &self.point.passive[force];
             let limit = at.bounds[usize::from(mode == Mode::AtMax)];
-            if mode.sign() * (at.coordinate.value - limit) < -1.5 * at.rounding {
+            if mode.sign() * (at.coordinate.value - limit) < -0.9 * at.rounding {
                 self.passive.modes[force] = mode;
                 self.passive.anchors[force] = limit;
             }
@@ -155,19 +153,10 @@ impl Equations {
         if self.passive.holds() {
             self.project_places(solver, given, time, x)?;
             self.release();
+            self.passive.anchors.fill(f64::INFINITY);
             self.evaluate(solver, given, time, x)?;
         }
         Ok(())
-    }
-
-    /// Changes values or velocities of the freedoms so that held coordinates change by `wanted`.
-    fn correct(&mut self, wanted: impl Fn(usize) -> f64, x: &mut [f64]) {
-        let mut changes = vec![0.0; x.len()];
-        self.passive.correct(wanted, &mut changes);
-        ascend(self.factor(), &mut changes);
-        for (x, change) in x.iter_mut().zip(changes) {
-            *x += change;
-        }
     }
 
     /// Decides the modes of all passive forces at the solver's pose: lets contacts bounce or rest, and
@@ -270,11 +259,12 @@ impl Equations {
         rates.map(|rate| mode.sign() * rate)
     }
 
-    /// Returns the speed of a contact that counts as rest: that of the lowest fall.
+    /// Returns the speed of a contact that counts as rest: that of the lowest fall, or of as low a rise,
+    /// as friction and other contacts may turn the acceleration round.
     fn resting_speed(&self, contact: Contact) -> f64 {
         let rounding = self.point.passive[contact.force].rounding;
         let [_, acceleration] = self.opening(contact);
-        rounding + (2.0 * LOWEST_FALL * rounding * (-acceleration).max(0.0)).sqrt()
+        rounding + (2.0 * LOWEST_FALL * rounding * acceleration.abs()).sqrt()
     }
 
     /// Lets all contacts that close bounce. Returns how long each passive force goes on bouncing beneath
@@ -296,7 +286,7 @@ impl Equations {
             if !contacts.iter().any(closes) {
                 return Ok(rest);
             }
-            let hits: Vec<Hit> = contacts
+            let mut hits: Vec<Hit> = contacts
                 .iter()
                 .map(|&contact| Hit {
                     contact,
@@ -315,14 +305,11 @@ impl Equations {
             self.evaluate(solver, given, time, x)?;
             if self.point.energy > energy {
                 // Contacts of different restitution may gain energy from each other.
-                let least = hits.iter().map(|hit| hit.restitution).fold(1.0, f64::min);
-                let hits: Vec<Hit> = hits
-                    .iter()
-                    .map(|hit| Hit {
-                        restitution: least.min(hit.restitution),
-                        ..*hit
-                    })
-                    .collect();
+                let closing = hits.iter().filter(|hit| hit.speed > 0.0);
+                let least = closing.map(|hit| hit.restitution).fold(1.0, f64::min);
+                for hit in &mut hits {
+                    hit.restitution = hit.restitution.min(least);
+                }
                 x.copy_from_slice(&start);
                 impulses = self.strike(solver, &hits, x)?;
                 self.evaluate(solver, given, time, x)?;

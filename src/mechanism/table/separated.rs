@@ -10,6 +10,10 @@ pub(crate) struct Separated<'a> {
     text: Cow<'a, str>,
     delimiter: u8,
     /// Whether blanks separate the columns; commas have taken their place.
+    #[cfg_attr(
+        not(feature = "cli"),
+        expect(dead_code, reason = "headers are the program's")
+    )]
     has_blanks: bool,
 }
 
