@@ -13,7 +13,11 @@
 //! | `given` | what comes from outside: inputs |
 //! | `state` | [`FreeState`]: all numbers on which a motion depends |
 //! | `charts` | the coordinates in which the freedoms are integrated |
+//! | `triangular`, `bounded` | triangular factors; forces between bounds |
+//! | `passive` | [`Passive`] forces, those of stops and friction, and their modes |
+//! | `watch` | the search for the instants at which modes end |
 //! | `equations` | the right-hand side |
+//! | `settle` | events: impacts, and the modes after them |
 //! | `variations` | the changes of a motion along directions |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
 //! | `linear` | its linearisation at a pose; static equilibrium |
