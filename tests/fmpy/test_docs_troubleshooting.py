@@ -42,6 +42,7 @@ NOT_FOR_PEOPLE = re.compile(
 PARTS = {
     "a fixed parameter, and initialization has ended": "cannot be set: it is …",
     "a parameter derived from others": "cannot be set: it is …",
+    "an event indicator": "cannot be set: it is …",
     "a state, and initialization has ended": "cannot be set: it is …",
     "an output, and initialization has ended": "cannot be set: it is …",
     "a state, which initialization computes": "cannot be set: it is …",
