@@ -239,7 +239,11 @@ impl MechanismModel {
 
     /// Returns whether held coordinates have drifted from where they are held, at the committed pose.
     pub(super) fn wants_projection(&mut self) -> bool {
-        self.solve_freedoms().is_ok() && self.free.as_ref().is_some_and(FreeMotion::has_drifted)
+        self.free
+            .as_ref()
+            .is_some_and(FreeMotion::has_passive_forces)
+            && self.solve_freedoms().is_ok()
+            && self.free.as_ref().is_some_and(FreeMotion::has_drifted)
     }
 
     /// Lets contacts bounce or rest, and friction stick or slide, at the committed pose. Returns whether
