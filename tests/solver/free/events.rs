@@ -35,6 +35,49 @@ way = {{ coordinate = "x", markers = ["ground.O", "slider.P"], start = {start}, 
     )
 }
 
+/// A rod of 1 m and 1 kg that hangs at its end, level at first, with its angle `swing`.
+fn pendulum(parts: &str) -> String {
+    format!(
+        r#"
+format = 1
+name = "pendulum"
+[ground.markers]
+O = [0, 0]
+[bodies.rod]
+mass = 1
+center = [0.5, 0]
+inertia = "1/12"
+markers = {{ O = [0, 0] }}
+[joints]
+pin = {{ type = "revolute", markers = ["ground.O", "rod.O"] }}
+[freedoms]
+swing = {{ coordinate = "angle", markers = ["ground.O", "rod.O"], start = 0 }}
+{parts}
+"#
+    )
+}
+
+/// A block of 1 kg on a belt, each on a level guide.
+fn belt(parts: &str) -> String {
+    format!(
+        r#"
+format = 1
+name = "belt"
+[ground.markers]
+O = [0, 0]
+[bodies.belt]
+markers = {{ B = [0, 0] }}
+[bodies.block]
+mass = 1
+markers = {{ C = [0, 0] }}
+[joints]
+block_guide = {{ type = "translational", markers = ["ground.O", "block.C"] }}
+belt_guide = {{ type = "translational", markers = ["ground.O", "belt.B"] }}
+{parts}
+"#
+    )
+}
+
 /// Runs to a time in steps, and returns the events; the joints stay closed and no energy appears.
 fn played(run: &mut Run, until: f64, steps: u32) -> Vec<Event> {
     let mut events = Vec::new();
@@ -144,19 +187,7 @@ rail = { of = "way", force = 12 }
 /// it is as fast as the belt.
 #[test]
 fn a_block_on_a_belt_sticks_and_slips() {
-    let text = r#"
-format = 1
-name = "belt"
-[ground.markers]
-O = [0, 0]
-[bodies.belt]
-markers = { B = [0, 0] }
-[bodies.block]
-mass = 1
-markers = { C = [0, 0] }
-[joints]
-block_guide = { type = "translational", markers = ["ground.O", "block.C"] }
-belt_guide = { type = "translational", markers = ["ground.O", "belt.B"] }
+    let parts = r#"
 [drivers]
 belt_way = { coordinate = "x", markers = ["ground.O", "belt.B"], motion = "0.1*t" }
 [freedoms]
@@ -166,6 +197,7 @@ spring = { coordinate = "x", markers = ["ground.O", "block.C"], stiffness = 100,
 [friction]
 rubber = { coordinate = "x", markers = ["belt.B", "block.C"], force = 2, static = 3 }
 "#;
+    let text = belt(parts);
     let (omega, speed) = (10.0_f64, 0.1_f64);
     // At x₀ with the belt's speed; mirrored about F / k it has that speed again.
     let [lead, center] = [0.03, 0.02];
@@ -173,7 +205,7 @@ rubber = { coordinate = "x", markers = ["belt.B", "block.C"], force = 2, static 
     let slip = angle / omega;
     let stick = 2.0 * (lead - center) / speed;
     let first = (lead - 0.02) / speed;
-    let mut run = Run::new(&parse(text), TOLERANCE, Fed::default());
+    let mut run = Run::new(&parse(&text), TOLERANCE, Fed::default());
     let events = played(&mut run, first + 5.0 * (slip + stick) + 0.01, 11);
     let expected: Vec<_> = (0..12)
         .map(|k| {
@@ -287,24 +319,8 @@ fn an_elastic_stop_throws_back() {
 /// restitution of its energy, and small swings are those of the pendulum.
 #[test]
 fn a_pendulum_swings_against_a_stop() {
-    let text = r#"
-format = 1
-name = "pendulum"
-[ground.markers]
-O = [0, 0]
-[bodies.rod]
-mass = 1
-center = [0.5, 0]
-inertia = "1/12"
-markers = { O = [0, 0] }
-[joints]
-pin = { type = "revolute", markers = ["ground.O", "rod.O"] }
-[freedoms]
-swing = { coordinate = "angle", markers = ["ground.O", "rod.O"], start = 0 }
-[stops]
-post = { of = "swing", min = "-90*deg", restitution = 0.5 }
-"#;
-    let mut run = Run::new(&parse(text), TOLERANCE, Fed::default());
+    let stop = "[stops]\npost = { of = \"swing\", min = \"-90*deg\", restitution = 0.5 }";
+    let mut run = Run::new(&parse(&pendulum(stop)), TOLERANCE, Fed::default());
     let events = played(&mut run, 4.0, 5);
     // The speed at the bottom by the energy: ω² = 3 g / l; half of it after each impact.
     let mut speed = (3.0 * G).sqrt();
@@ -384,24 +400,9 @@ buffer = {{ coordinate = "x", markers = ["a.P", "b.P"], min = 0.2, restitution =
 /// and the pendulum comes to rest where friction holds it.
 #[test]
 fn friction_takes_the_energy() {
-    let text = r#"
-format = 1
-name = "pendulum"
-[ground.markers]
-O = [0, 0]
-[bodies.rod]
-mass = 1
-center = [0.5, 0]
-inertia = "1/12"
-markers = { O = [0, 0] }
-[joints]
-pin = { type = "revolute", markers = ["ground.O", "rod.O"] }
-[freedoms]
-swing = { coordinate = "angle", markers = ["ground.O", "rod.O"], start = 0 }
-[friction]
-bearing = { of = "swing", force = 0.2, static = 0.3, stribeck = 0.05, viscous = 0.02 }
-"#;
-    let mut run = Run::new(&parse(text), TOLERANCE, Fed::default());
+    let friction = "[friction]\nbearing = { of = \"swing\", force = 0.2, static = 0.3, stribeck = 0.05, \
+                    viscous = 0.02 }";
+    let mut run = Run::new(&parse(&pendulum(friction)), TOLERANCE, Fed::default());
     let events = played(&mut run, 60.0, 60);
     assert_eq!(
         events.last().map(|event| event.kind),
@@ -441,19 +442,7 @@ fn a_saved_motion_goes_on_with_the_same_bits() {
 /// with the belt.
 #[test]
 fn a_driver_that_jumps_leaves_what_sticks() {
-    let text = r#"
-format = 1
-name = "belt"
-[ground.markers]
-O = [0, 0]
-[bodies.belt]
-markers = { B = [0, 0] }
-[bodies.block]
-mass = 1
-markers = { C = [0, 0] }
-[joints]
-block_guide = { type = "translational", markers = ["ground.O", "block.C"] }
-belt_guide = { type = "translational", markers = ["ground.O", "belt.B"] }
+    let parts = r#"
 [drivers]
 belt_way = { coordinate = "x", markers = ["ground.O", "belt.B"], start = 0 }
 [freedoms]
@@ -461,6 +450,7 @@ way = { coordinate = "x", markers = ["ground.O", "block.C"], start = 0 }
 [friction]
 rubber = { coordinate = "x", markers = ["belt.B", "block.C"], force = 2 }
 "#;
+    let text = belt(parts);
     let before = Fed {
         driver: |_, time| Jet::new(0.1 * time, [0.1, 0.0]),
         ..Fed::default()
@@ -469,7 +459,7 @@ rubber = { coordinate = "x", markers = ["belt.B", "block.C"], force = 2 }
         driver: |_, time| Jet::new(0.5 + 0.1 * time, [0.1, 0.0]),
         ..Fed::default()
     };
-    let mechanism = parse(text);
+    let mechanism = parse(&text);
     let mut run = Run::new(&mechanism, TOLERANCE, before);
     // 2 N on 1 kg: after 0.05 s the block is as fast as the belt.
     let events = played(&mut run, 1.0, 1);
