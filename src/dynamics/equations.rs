@@ -8,7 +8,7 @@ use super::integrator::{Failure, System};
 use super::passive::{Passive, PassiveForces};
 use super::state::FreeState;
 use super::triangular::{ascend, descend};
-use super::watch::{Verdict, Watch};
+use super::watch::Watch;
 use crate::kinematics::{
     Blocked, Curve, Direction, EquationsOfMotion, ForceQuantity, Forces, KnownMotion, Path, Pose,
     Rates, Reason, Solution, Solver, SolverChoices,
@@ -285,8 +285,9 @@ impl Equations {
         self.watch.goal(&self.passive, now, &self.accepted.passive)
     }
 
-    /// Looks for events between the accepted point and the present one.
-    fn judge(&mut self, solver: &Solver) -> Verdict {
+    /// Looks for events between the accepted point and the present one. Returns the time at which the step
+    /// must end instead, if there is an earlier one.
+    fn judge(&mut self, solver: &Solver) -> Option<f64> {
         let times = [self.pose.time, solver.pose().time];
         let points = [&*self.accepted.passive, &*self.point.passive];
         self.watch.judge(&self.passive, times, points)
@@ -689,7 +690,7 @@ impl<G: Given> System for Trials<'_, G> {
     }
 
     fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
-        if let Verdict::Cut(time) = self.equations.judge(self.solver) {
+        if let Some(time) = self.equations.judge(self.solver) {
             return Err(Failure::Cut(time));
         }
         let proved = self.equations.prove(self.solver);

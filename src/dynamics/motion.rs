@@ -412,7 +412,7 @@ impl FreeMotion {
                 .advance(&mut trials, goal)
                 .map_err(Error::from)
             {
-                Ok(_) if self.equations.watch.event.is_some() => {
+                Ok(_) if self.equations.watch.is_event => {
                     if !self.equations.directions.is_empty() {
                         return Err(Error::NoDerivatives {
                             time: solver.pose().time,

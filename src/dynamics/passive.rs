@@ -11,8 +11,7 @@ use super::triangular::{ascend, descend, factorise};
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::{EquationsOfMotion, Sensitivity, Solver};
 use crate::mechanism::{
-    DriverId, ElasticStop, Expression, FrictionLaw, Jet, Load, Mechanism, Order, ParameterId,
-    PassiveCause,
+    DriverId, ElasticStop, FrictionLaw, Jet, Load, Mechanism, Order, ParameterId, PassiveCause,
 };
 
 /// Gap and speed up to which a coordinate is at a stop and at rest, in radians or sizes of the
@@ -265,27 +264,28 @@ impl PassiveForces {
                 Cause::Friction(law) => {
                     let limit = law.sticking(&value);
                     to.bounds = [-limit, limit];
-                    let sign = self.modes[k].sign();
-                    // A coordinate that is driven slides as the drivers have it.
                     self.is_driven[k] = freedoms.iter().all(|id| self.rows[(k, id.index())] == 0.0);
-                    if sign != 0.0 || self.is_driven[k] {
-                        to.force = match self.is_driven[k] {
-                            true => law.along(&value, rate),
-                            false => -sign * law.sliding(&value, sign * rate),
-                        };
+                    let sign = self.sliding(k, rate);
+                    if sign != 0.0 {
+                        to.force = law.along(&value, rate, sign);
                         motion.exert(self.rows.row(k).iter().copied(), to.force, rate);
                     }
                 }
                 Cause::Elastic(stop) => {
-                    let limit = |limit: &Option<Expression>, none: f64| {
-                        limit.as_ref().map_or(none, |limit| limit.value(parameters))
-                    };
-                    let [least, most] = &stop.limits;
-                    to.bounds = [limit(least, f64::NEG_INFINITY), limit(most, f64::INFINITY)];
+                    to.bounds = stop.limits(parameters);
                     let push = stop.push(&value, [to.coordinate.value, rate]);
                     to.force = push.map_or(0.0, |(push, sign)| push * sign);
                 }
             }
+        }
+    }
+
+    /// Returns the direction in which the coordinate of friction slides at this rate: one that is driven, as
+    /// the drivers have it.
+    fn sliding(&self, force: usize, rate: f64) -> f64 {
+        match self.is_driven[force] {
+            true => FrictionLaw::direction(rate),
+            false => self.modes[force].sign(),
         }
     }
 
@@ -385,22 +385,15 @@ impl PassiveForces {
     /// Returns the changes of all coordinates along a direction, and writes those of forces that slide.
     pub(super) fn changes(&self, sensitivity: &Sensitivity<'_>, changes: &mut [f64]) -> Vec<Jet> {
         let parameter = |id: ParameterId| sensitivity.parameter_value(id);
-        let modes = self.modes.iter().zip(&self.is_driven);
-        let passive = self.list.iter().zip(modes).zip(changes);
-        let coordinates = passive.map(|((passive, (mode, &is_driven)), change)| {
-            let coordinate = sensitivity.coordinate(&*passive.relation);
-            let sign = mode.sign();
+        let passive = self.list.iter().enumerate().zip(changes);
+        let coordinates = passive.map(|((k, passive), change)| {
+            let rate = sensitivity.rate(&*passive.relation);
+            let sign = self.sliding(k, rate.value);
             *change = match &passive.cause {
-                Cause::Friction(law) if is_driven => law
-                    .along(&parameter, sensitivity.rate(&*passive.relation))
-                    .first(),
-                Cause::Friction(law) if sign != 0.0 => {
-                    let rate = sensitivity.rate(&*passive.relation);
-                    -sign * law.sliding(&parameter, rate * sign).first()
-                }
+                Cause::Friction(law) if sign != 0.0 => law.along(&parameter, rate, sign).first(),
                 _ => 0.0,
             };
-            coordinate
+            sensitivity.coordinate(&*passive.relation)
         });
         coordinates.collect()
     }

@@ -1,6 +1,6 @@
 //! Events: impacts, and the modes of passive forces after them.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::bounded;
 use super::equations::Equations;
@@ -152,9 +152,8 @@ impl Equations {
         }
         if self.passive.holds() {
             self.project_places(solver, given, time, x)?;
-            self.release();
             self.passive.anchors.fill(f64::INFINITY);
-            self.evaluate(solver, given, time, x)?;
+            self.release(solver, given, time, x)?;
         }
         Ok(())
     }
@@ -180,13 +179,9 @@ impl Equations {
         self.watch.begin();
         let before = self.passive.modes.clone();
         self.evaluate(solver, given, time, x)?;
-        self.release();
-        self.evaluate(solver, given, time, x)?;
+        self.release(solver, given, time, x)?;
         self.push_out(solver, given, time, x)?;
         let rest = self.bounce(solver, given, time, x, events)?;
-        // Friction sticks, or turns, where an impact has changed the velocity.
-        self.release();
-        self.evaluate(solver, given, time, x)?;
         self.choose(solver, given, time, x, &before)?;
         self.project(solver, given, time, x)?;
         for (k, before) in before.into_iter().enumerate() {
@@ -221,8 +216,14 @@ impl Equations {
     }
 
     /// Opens all contacts, and leaves friction undecided where its coordinate rests; elsewhere it slides
-    /// as the coordinate does.
-    fn release(&mut self) {
+    /// as the coordinate does. Evaluates the equations so.
+    fn release(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+        x: &[f64],
+    ) -> Result<(), Error> {
         let Self { passive, point, .. } = self;
         for (k, at) in point.passive.iter().enumerate() {
             let rate = at.coordinate.first();
@@ -235,6 +236,7 @@ impl Equations {
                 _ => Mode::Free,
             };
         }
+        self.evaluate(solver, given, time, x)
     }
 
     /// Returns the contacts at the present point.
@@ -279,11 +281,15 @@ impl Equations {
     ) -> Result<Vec<f64>, Error> {
         let mut rest = vec![0.0; self.passive.list.len()];
         let mut is_tired = vec![false; rest.len()];
-        for _ in 0..MOST_IMPACTS {
+        for impacts in 0..MOST_IMPACTS {
             let contacts = self.contacts();
             let closes =
                 |contact: &Contact| self.opening(*contact)[0] < -self.resting_speed(*contact);
             if !contacts.iter().any(closes) {
+                if impacts > 0 {
+                    // Friction sticks, or turns, where an impact has changed the velocity.
+                    self.release(solver, given, time, x)?;
+                }
                 return Ok(rest);
             }
             let mut hits: Vec<Hit> = contacts
@@ -349,19 +355,10 @@ impl Equations {
     /// returns the impulses.
     fn strike(&self, solver: &Solver, hits: &[Hit], x: &mut [f64]) -> Result<Vec<f64>, Error> {
         let count = self.freedoms.len();
-        let columns = self.signed_columns(hits.iter().map(|hit| hit.contact));
-        let compliance = columns.transpose() * &columns;
-        let rates: Vec<f64> = hits
-            .iter()
-            .map(|hit| -hit.speed * (1.0 + hit.restitution))
-            .collect();
-        for (k, hit) in hits.iter().enumerate() {
-            if compliance[(k, k)] == 0.0 && rates[k] < 0.0 {
-                return Err(self.stop(solver, hit.contact));
-            }
-        }
-        let pushes = vec![[0.0, f64::INFINITY]; hits.len()];
-        let impulses = bounded::solve(&compliance, &rates, &pushes);
+        let contacts: Vec<Contact> = hits.iter().map(|hit| hit.contact).collect();
+        let rates = hits.iter().map(|hit| -hit.speed * (1.0 + hit.restitution));
+        let rates: Vec<f64> = rates.collect();
+        let (impulses, columns) = self.press(solver, &contacts, &[], &rates)?;
         let mut changes = &columns * &impulses;
         ascend(self.factor(), changes.as_mut_slice());
         for (x, change) in x[count..2 * count].iter_mut().zip(&changes) {
@@ -384,14 +381,32 @@ impl Equations {
         }
     }
 
-    /// Returns L⁻¹ (∂c/∂u)ᵀ of contacts by columns, with c the way by which each opens.
-    fn signed_columns(&self, contacts: impl Iterator<Item = Contact> + Clone) -> DMatrix<f64> {
-        let some: Vec<usize> = contacts.clone().map(|contact| contact.force).collect();
+    /// Finds the forces or impulses of contacts, which push, and of friction between its bounds, for these
+    /// accelerations or rates without them. Also returns L⁻¹ (∂c/∂u)ᵀ by columns, with c the way by which
+    /// a contact opens.
+    fn press(
+        &self,
+        solver: &Solver,
+        contacts: &[Contact],
+        frictions: &[usize],
+        rates: &[f64],
+    ) -> Result<(DVector<f64>, DMatrix<f64>), Error> {
+        let some = contacts.iter().map(|contact| contact.force);
+        let some: Vec<usize> = some.chain(frictions.iter().copied()).collect();
         let mut columns = self.passive.columns(&some, &self.freedoms, self.factor());
         for (mut column, contact) in columns.column_iter_mut().zip(contacts) {
             column *= contact.mode.sign();
         }
-        columns
+        let compliance = columns.transpose() * &columns;
+        for (k, &contact) in contacts.iter().enumerate() {
+            if compliance[(k, k)] == 0.0 && rates[k] < 0.0 {
+                return Err(self.stop(solver, contact));
+            }
+        }
+        let pushes = contacts.iter().map(|_| [0.0, f64::INFINITY]);
+        let holds = frictions.iter().map(|&k| self.point.passive[k].bounds);
+        let bounds: Vec<[f64; 2]> = pushes.chain(holds).collect();
+        Ok((bounded::solve(&compliance, rates, &bounds), columns))
     }
 
     /// Chooses which contacts stay closed and which friction sticks, by the accelerations.
@@ -415,32 +430,12 @@ impl Equations {
                 is_friction && !is_driven && self.passive.modes[*k] == Mode::Free
             };
             let frictions: Vec<usize> = (0..before.len()).filter(undecided).collect();
-            let frictions_as_contacts = frictions.iter().map(|&force| Contact {
-                force,
-                mode: Mode::AtMin,
-            });
-            let all: Vec<Contact> = contacts
+            let of_contacts = contacts.iter().map(|contact| self.opening(*contact)[1]);
+            let of_frictions = frictions
                 .iter()
-                .copied()
-                .chain(frictions_as_contacts)
-                .collect();
-            let columns = self.signed_columns(all.iter().copied());
-            let compliance = columns.transpose() * &columns;
-            let accelerations: Vec<f64> = all.iter().map(|c| self.opening(*c)[1]).collect();
-            let bounds: Vec<[f64; 2]> = all
-                .iter()
-                .enumerate()
-                .map(|(k, contact)| match k < contacts.len() {
-                    true => [0.0, f64::INFINITY],
-                    false => self.point.passive[contact.force].bounds,
-                })
-                .collect();
-            for (k, &contact) in contacts.iter().enumerate() {
-                if compliance[(k, k)] == 0.0 && accelerations[k] < 0.0 {
-                    return Err(self.stop(solver, contact));
-                }
-            }
-            let forces = bounded::solve(&compliance, &accelerations, &bounds);
+                .map(|&k| self.point.passive[k].coordinate.second());
+            let accelerations: Vec<f64> = of_contacts.chain(of_frictions).collect();
+            let (forces, _) = self.press(solver, &contacts, &frictions, &accelerations)?;
             let (of_contacts, of_frictions) = forces.as_slice().split_at(contacts.len());
             let mut slides = false;
             for (&k, &force) in frictions.iter().zip(of_frictions) {

@@ -26,22 +26,11 @@ pub(super) struct Function {
     rounding: f64,
 }
 
-/// The judgement of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Verdict {
-    /// All modes last.
-    Clear,
-    /// A mode ends here.
-    Event,
-    /// The step must end at this time.
-    Cut(f64),
-}
-
 /// The search along a motion.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    /// A passive force whose mode ends at the accepted point.
-    pub(super) event: Option<usize>,
+    /// Whether a mode ends at the accepted point.
+    pub(super) is_event: bool,
     /// Steps cut in a row.
     cuts: i32,
     beyond: Option<Beyond>,
@@ -102,18 +91,19 @@ impl Watch {
         *self = Self::default();
     }
 
-    /// Judges a step between two times and points.
+    /// Judges a step between two times and points. Returns the time at which it must end instead, if a
+    /// mode ends before.
     pub(super) fn judge(
         &mut self,
         forces: &PassiveForces,
         [start, end]: [f64; 2],
         [from, to]: [&[Passive]; 2],
-    ) -> Verdict {
+    ) -> Option<f64> {
         let h = end - start;
         let resolution = 4.0 * f64::EPSILON * start.abs().max(end.abs());
         let is_shortest = h <= resolution || self.cuts >= MOST_CUTS;
         let mut first: Option<(f64, Beyond)> = None;
-        self.event = None;
+        self.is_event = false;
         for index in 0..forces.list.len() * FUNCTIONS {
             let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
             let [before, after] = [from, to].map(|at| forces.function(force, &at[force], side));
@@ -137,7 +127,7 @@ impl Watch {
                     first = Some((zero, beyond));
                 }
             } else if before.ends_at(&after) {
-                self.event.get_or_insert(force);
+                self.is_event = true;
             }
         }
         let Some((zero, beyond)) = first else {
@@ -146,24 +136,18 @@ impl Watch {
             if let Some(beyond) = &mut self.beyond {
                 beyond.value *= 0.5;
             }
-            return match self.event {
-                Some(_) => Verdict::Event,
-                None => Verdict::Clear,
-            };
+            return None;
         };
         let inside = |time: &f64| start < *time && *time < end;
         let cut = [start + zero, start + 0.5 * h].into_iter().find(inside);
-        match cut {
-            Some(time) if !is_shortest => {
-                self.cuts += 1;
-                self.beyond = Some(beyond);
-                Verdict::Cut(time)
-            }
-            _ => {
-                self.event = Some(beyond.index / FUNCTIONS);
-                Verdict::Event
-            }
+        let cut = cut.filter(|_| !is_shortest);
+        if cut.is_some() {
+            self.cuts += 1;
+            self.beyond = Some(beyond);
+        } else {
+            self.is_event = true;
         }
+        cut
     }
 
     /// Returns the time at which the next step from an accepted point had better end: on the way to a
@@ -219,15 +203,22 @@ impl Function {
         after.value <= 0.0 && falls
     }
 
-    /// Returns the value on the cubic through values and rates at both ends of a step, at a part of it.
-    fn between(&self, after: &Self, h: f64, part: f64) -> f64 {
-        let [Some(first), Some(last)] = [self.rate, after.rate] else {
-            return self.value + part * (after.value - self.value);
-        };
-        let rest = 1.0 - part;
+    /// Returns the coefficients of the cubic through values and rates at both ends of a step, in powers of
+    /// a part of it; those of a straight line for a force.
+    fn cubic(&self, after: &Self, h: f64) -> [f64; 4] {
         let rise = after.value - self.value;
-        let bend = (rest * (h * first - rise) - part * (h * last - rise)) * part * rest;
-        self.value + part * rise + bend
+        let [Some(first), Some(last)] = [self.rate, after.rate] else {
+            return [self.value, rise, 0.0, 0.0];
+        };
+        let (first, last) = (h * first, h * last);
+        let third = first + last - 2.0 * rise;
+        [self.value, first, rise - first - third, third]
+    }
+
+    /// Returns the value on the cubic at a part of a step.
+    fn between(&self, after: &Self, h: f64, part: f64) -> f64 {
+        let [value, first, second, third] = self.cubic(after, h);
+        value + part * (first + part * (second + part * third))
     }
 
     /// Returns whether the function goes below zero and comes back within a step, as far as values and
@@ -244,12 +235,8 @@ impl Function {
     /// Returns the part of a step at which the cubic is lowest, where it falls at first and rises at
     /// last.
     fn lowest(&self, after: &Self, h: f64) -> f64 {
-        let slope = |part: f64| {
-            let step = 1e-4;
-            let around = [part - step, part + step];
-            let [low, high] = around.map(|part| self.between(after, h, part));
-            high - low
-        };
+        let [_, first, second, third] = self.cubic(after, h);
+        let slope = |part: f64| first + part * (2.0 * second + 3.0 * part * third);
         bisect(0.0, 1.0, |part| slope(part) < 0.0)
     }
 

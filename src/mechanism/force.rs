@@ -244,6 +244,12 @@ impl ForceLaw {
 }
 
 impl ElasticStop {
+    /// Returns least and largest value at which it does not push \[m or rad\], infinite without a limit.
+    #[must_use]
+    pub fn limits(&self, parameters: &[f64]) -> [f64; 2] {
+        limits(self.limits.each_ref(), parameters)
+    }
+
     /// Returns how far a value is beyond a limit, and 1 for the least or −1 for the largest one; `None`
     /// between the limits.
     fn beyond<N: Number>(
@@ -386,4 +392,13 @@ impl Mechanism {
     pub fn has_dynamics(&self) -> bool {
         !self.forces.is_empty() || self.bodies.iter().any(|body| body.mass.is_some())
     }
+}
+
+/// Returns least and largest value for these parameters, infinite without a limit.
+pub(super) fn limits(limits: [&Option<Expression>; 2], parameters: &[f64]) -> [f64; 2] {
+    let [least, most] = limits.map(|limit| limit.as_ref().map(|limit| limit.value(parameters)));
+    [
+        least.unwrap_or(f64::NEG_INFINITY),
+        most.unwrap_or(f64::INFINITY),
+    ]
 }

@@ -19,18 +19,20 @@ pub struct FrictionLaw {
 impl FrictionLaw {
     /// Returns the force against the motion at a rate of the coordinate in the direction of the
     /// motion: [`dry`](Self::dry) and viscous friction.
-    pub fn sliding<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, speed: N) -> N {
+    fn sliding<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, speed: N) -> N {
         self.dry(parameter, speed) + self.viscous(parameter) * speed
     }
 
-    /// Returns the force along a coordinate that slides at this rate; none where it rests.
-    pub fn along<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N) -> N {
-        let real = rate.real();
-        if real == 0.0 {
-            return N::constant(0.0);
-        }
-        let sign = real.signum();
-        -(self.sliding(parameter, rate * sign) * sign)
+    /// Returns the force along a coordinate that slides at this rate in the direction of a sign.
+    pub fn along<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N, sign: f64) -> N {
+        // No negative zero at rest.
+        self.sliding(parameter, rate * sign) * (0.0 - sign)
+    }
+
+    /// Returns the direction in which a coordinate slides: zero where it rests.
+    #[must_use]
+    pub fn direction(rate: f64) -> f64 {
+        if rate == 0.0 { 0.0 } else { rate.signum() }
     }
 
     /// Returns the part of the force that does not grow with the rate of the coordinate:

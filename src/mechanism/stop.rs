@@ -1,6 +1,6 @@
 //! Stops: where a coordinate may not go.
 
-use super::{Coordinate, ElasticStop, Expression, Force, ForceLaw, Load, PassiveCause};
+use super::{Coordinate, ElasticStop, Expression, Force, ForceLaw, Load, PassiveCause, force};
 
 /// Limits that a coordinate does not pass.
 #[derive(Clone, Debug)]
@@ -62,13 +62,7 @@ impl Stop {
     /// Allocates nothing.
     #[must_use]
     pub fn limits(&self, parameters: &[f64]) -> [f64; 2] {
-        let value = |limit: &Option<Expression>, none: f64| {
-            limit.as_ref().map_or(none, |limit| limit.value(parameters))
-        };
-        [
-            value(&self.min, f64::NEG_INFINITY),
-            value(&self.max, f64::INFINITY),
-        ]
+        force::limits([&self.min, &self.max], parameters)
     }
 
     /// Returns the word for the coordinate in messages.

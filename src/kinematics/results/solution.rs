@@ -153,7 +153,8 @@ impl Solution {
         let parameters = &solver.pose().parameters;
         for (load, relation, law) in &self.frictions {
             let rate = solver.coordinate(&**relation, &self.rates).first();
-            self.loads[*load] = law.along(&|id: ParameterId| parameters[id.index()], rate);
+            let sign = FrictionLaw::direction(rate);
+            self.loads[*load] = law.along(&|id: ParameterId| parameters[id.index()], rate, sign);
         }
         match self.split() {
             (motion, Some(forces)) => solver.solve_forces(motion, parts, forces),
@@ -213,7 +214,8 @@ impl Solution {
             let along = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
             for (load, relation, law) in &self.frictions {
                 let rate = along.rate(&**relation);
-                let force = law.along(&|id: ParameterId| along.parameter_value(id), rate);
+                let sign = FrictionLaw::direction(rate.value);
+                let force = law.along(&|id: ParameterId| along.parameter_value(id), rate, sign);
                 loads[*load] = force.first();
             }
         }
