@@ -10,14 +10,20 @@ use super::state::FreeState;
 use super::triangular::{ascend, descend};
 use super::watch::Watch;
 use crate::kinematics::{
-    Blocked, Curve, Direction, EquationsOfMotion, ForceQuantity, Forces, KnownMotion, Path, Pose,
-    Rates, Reason, Solution, Solver, SolverChoices,
+    Blocked, Curve, Direction, EquationsOfMotion, ForceParts, ForceQuantity, Forces, KnownMotion,
+    Path, Pose, Rates, Reason, Solution, Solver, SolverChoices,
 };
 use crate::mechanism::{DriverId, Jet, Mechanism, Order};
 
 /// A freedom feels no inertia of its own if this part of √M ∂q/∂u is left of it where those of others
 /// are taken out: some hundred roundings.
 const NO_INERTIA: f64 = 1e-13;
+
+/// The part of the forces on which friction in joints depends.
+const REACTIONS: ForceParts = ForceParts {
+    efforts: false,
+    reactions: true,
+};
 
 /// The equations of a mechanism, and the accepted pose from which trials set out.
 #[derive(Debug)]
@@ -39,6 +45,8 @@ pub(super) struct Equations {
     factor: DMatrix<f64>,
     accelerations: Vec<f64>,
     pub(super) passive: PassiveForces,
+    /// Rates of q for the reactions of joints with friction.
+    rates: Rates,
     pub(super) watch: Watch,
     /// The trial point at which the equations are.
     pub(super) point: Point,
@@ -90,7 +98,7 @@ impl Equations {
         let freedoms: Vec<_> = freedoms.map(|(index, _)| DriverId(index)).collect();
         let forces = solver.forces();
         let (count, unknowns) = (freedoms.len(), solver.pose().q.len());
-        let passive = PassiveForces::new(solver.mechanism(), count);
+        let passive = PassiveForces::new(solver, count);
         let drivers = solver.pose().drivers.iter();
         let point = Point {
             drivers: drivers.map(|value| Jet::constant(*value)).collect(),
@@ -111,6 +119,7 @@ impl Equations {
             accelerations: vec![0.0; count],
             watch: Watch::default(),
             passive,
+            rates: Rates::new(unknowns),
             accepted: point.clone(),
             point,
             pose: solver.pose().clone(),
@@ -175,6 +184,32 @@ impl Equations {
         direction: &mut Direction,
         loads: &mut [f64],
     ) -> Result<(), Error> {
+        self.complete_with(solver, rates, direction, loads, &[])?;
+        if self.passive.bearings.is_empty() {
+            return Ok(());
+        }
+        let motion = KnownMotion {
+            rates,
+            driver_rates: &self.point.drivers,
+            inputs: &self.point.loads,
+        };
+        let changes = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
+        let joints = self.passive.bearings.iter();
+        let reactions: Vec<_> = joints.map(|(_, joint)| changes.reaction(*joint)).collect();
+        let along = solver.sensitivity(rates, &self.point.drivers, direction)?;
+        let sliding = self.passive.joint_changes(&along, &reactions).to_vec();
+        self.complete_with(solver, rates, direction, loads, &sliding)
+    }
+
+    /// Completes a direction for these changes of the friction in joints that slide, none if empty.
+    fn complete_with(
+        &mut self,
+        solver: &mut Solver,
+        rates: &Rates,
+        direction: &mut Direction,
+        loads: &mut [f64],
+        sliding: &[f64],
+    ) -> Result<(), Error> {
         for freedom in &self.freedoms {
             direction.drivers[freedom.index()].derivatives[1] = 0.0;
         }
@@ -192,6 +227,9 @@ impl Equations {
         if !passive.is_empty() {
             let sensitivity = solver.sensitivity(rates, &point.drivers, direction)?;
             coordinates = passive.changes(&sensitivity, &mut loads[of_passive..]);
+            for ((k, _), change) in passive.bearings.iter().zip(sliding) {
+                loads[of_passive + k] = *change;
+            }
         }
         let motion = KnownMotion {
             rates,
@@ -509,20 +547,49 @@ impl Equations {
         solver.write_equations(velocity, loads, forces, motion)?;
         *energy = motion.energy;
         passive.begin(solver, freedoms, motion, at);
-        self.solve_accelerations(solver)?;
-        self.hold();
+        if self.passive.bearings.is_empty() {
+            self.respond(solver)?;
+        } else {
+            self.solve_joint_friction(solver)?;
+        }
+        self.passive.exert(&self.point.passive, &mut self.motion);
         Ok(())
     }
 
-    /// Finds the passive forces that hold, and completes all of them by the accelerations.
-    fn hold(&mut self) {
+    /// Solves the friction in joints, and with it accelerations and forces that hold.
+    fn solve_joint_friction(&mut self, solver: &mut Solver) -> Result<(), Error> {
+        let mut friction = std::mem::take(&mut self.passive.joint_friction);
+        let solved = friction.solve(|sizes, reactions| {
+            let at = &mut self.point.passive;
+            self.passive.slide(sizes, at, &mut self.motion);
+            self.respond(solver)?;
+            let Point { drivers, loads, .. } = &self.point;
+            solver.solve_rates(|driver| drivers[driver.index()], &mut self.rates)?;
+            let motion = KnownMotion {
+                rates: &self.rates,
+                driver_rates: drivers,
+                inputs: loads,
+            };
+            solver.solve_forces(motion, REACTIONS, &mut self.forces)?;
+            for (reaction, (_, joint)) in reactions.iter_mut().zip(&self.passive.bearings) {
+                *reaction = self.forces.reaction(*joint);
+            }
+            Ok(())
+        });
+        self.passive.joint_friction = friction;
+        self.passive.bound(&mut self.point.passive);
+        solved
+    }
+
+    /// Solves the accelerations, with the forces that hold, and writes the loads.
+    fn respond(&mut self, solver: &Solver) -> Result<(), Error> {
+        self.solve_accelerations(solver)?;
         let Self {
             passive,
             point,
             freedoms,
             factor,
             accelerations,
-            motion,
             ..
         } = self;
         let Point {
@@ -532,14 +599,14 @@ impl Equations {
             ..
         } = point;
         if at.is_empty() {
-            return;
+            return Ok(());
         }
         passive.accelerate(at, drivers.iter().map(Jet::second));
         if passive.holds() {
             passive.prepare(freedoms, factor);
             accelerations.fill(0.0);
             passive.correct(at, Order::Acceleration, accelerations);
-            passive.exert(at, motion);
+            passive.write_holding(at);
             ascend(factor, accelerations);
             for (freedom, change) in freedoms.iter().zip(&*accelerations) {
                 drivers[freedom.index()].derivatives[1] += change;
@@ -550,6 +617,7 @@ impl Equations {
         for (load, at) in loads[inputs..].iter_mut().zip(&*at) {
             *load = at.force;
         }
+        Ok(())
     }
 
     /// Solves J ü = −bias for the freedoms, by least squares on √M ∂q/∂u: where J is badly conditioned,

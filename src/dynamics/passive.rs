@@ -9,9 +9,9 @@ use nalgebra::DMatrix;
 use super::triangular::{ascend, descend, factorise};
 
 use crate::kinematics::constraint::{Constraint, of_coordinate};
-use crate::kinematics::{EquationsOfMotion, Sensitivity, Solver};
+use crate::kinematics::{EquationsOfMotion, JointFriction, Sensitivity, Solver};
 use crate::mechanism::{
-    DriverId, ElasticStop, FrictionLaw, Jet, Load, Mechanism, Order, ParameterId, PassiveCause,
+    DriverId, Dual, ElasticStop, FrictionLaw, Jet, Load, Order, ParameterId, PassiveCause,
 };
 
 /// Gap and speed up to which a coordinate is at a stop and at rest, in radians or sizes of the
@@ -132,6 +132,11 @@ pub(super) struct PassiveForces {
     factor: DMatrix<f64>,
     /// The forces that hold, or impulses.
     forces: Vec<f64>,
+    /// Accelerations of the coordinates where no driver accelerates.
+    coasting: Vec<f64>,
+    pub(super) joint_friction: JointFriction,
+    /// Friction in joints, in their order there: its index here, and that of the joint.
+    pub(super) bearings: Vec<(usize, usize)>,
 }
 
 /// One passive force.
@@ -151,11 +156,12 @@ pub(super) enum Cause {
     Stop(usize),
     /// An elastic stop: its force has a law, which changes where it is touched.
     Elastic(ElasticStop),
-    Friction(FrictionLaw),
+    Friction(Box<FrictionLaw>),
 }
 
 impl PassiveForces {
-    pub(super) fn new(mechanism: &Mechanism, freedoms: usize) -> Self {
+    pub(super) fn new(solver: &Solver, freedoms: usize) -> Self {
+        let mechanism = solver.mechanism();
         let forces = mechanism.forces.iter().enumerate();
         let all = forces.filter_map(|(index, force)| {
             let (coordinate, cause) = match &force.load {
@@ -181,7 +187,16 @@ impl PassiveForces {
         let loads = list.len();
         list.extend(elastic);
         let (count, drivers) = (list.len(), mechanism.drivers.len());
+        let bearings = list.iter().enumerate().filter_map(|(k, passive)| {
+            let Cause::Friction(law) = &passive.cause else {
+                return None;
+            };
+            Some((k, law.bearing.as_ref()?.joint))
+        });
         Self {
+            coasting: vec![0.0; count],
+            joint_friction: solver.joint_friction(),
+            bearings: bearings.collect(),
             modes: vec![Mode::Free; count],
             is_driven: vec![false; count],
             anchors: vec![0.0; count],
@@ -238,7 +253,7 @@ impl PassiveForces {
     }
 
     /// Reads coordinates and their partial derivatives at the solver's pose, and adds the friction that
-    /// slides to the equations of motion, which are those of the pose.
+    /// slides, but in joints, to the equations of motion, which are those of the pose.
     pub(super) fn begin(
         &mut self,
         solver: &Solver,
@@ -248,9 +263,12 @@ impl PassiveForces {
     ) {
         let parameters = &solver.pose().parameters;
         let value = |id: ParameterId| parameters[id.index()];
+        self.joint_friction.set_parameters(parameters);
+        let mut place = 0;
         for (k, (passive, to)) in self.list.iter().zip(point).enumerate() {
             let relation = &*passive.relation;
             to.coordinate = solver.coordinate(relation, motion.coasting());
+            self.coasting[k] = to.coordinate.second();
             for driver in 0..self.rows.ncols() {
                 let unit = motion.unit(DriverId(driver));
                 self.rows[(k, driver)] = solver.coordinate(relation, unit).first();
@@ -266,8 +284,11 @@ impl PassiveForces {
                     to.bounds = [-limit, limit];
                     self.is_driven[k] = freedoms.iter().all(|id| self.rows[(k, id.index())] == 0.0);
                     let sign = self.sliding(k, rate);
-                    if sign != 0.0 {
-                        to.force = law.along(&value, rate, sign);
+                    if law.bearing.is_some() {
+                        self.joint_friction.set_motion(place, rate, sign);
+                        place += 1;
+                    } else if sign != 0.0 {
+                        to.force = law.along(&value, 1.0, rate, sign);
                         motion.exert(self.rows.row(k).iter().copied(), to.force, rate);
                     }
                 }
@@ -311,6 +332,26 @@ impl PassiveForces {
         factorise(&mut self.factor, count);
     }
 
+    /// Has the friction of the joints that slide act with these sizes.
+    pub(super) fn slide(&self, sizes: &[f64], at: &mut [Passive], motion: &mut EquationsOfMotion) {
+        for (&(k, _), size) in self.bearings.iter().zip(sizes) {
+            if !self.is_held(k) {
+                let at = &mut at[k];
+                let partials = self.rows.row(k).into_iter().copied();
+                motion.exert(partials, size - at.force, at.coordinate.first());
+                at.force = *size;
+            }
+        }
+    }
+
+    /// Writes the bounds of the friction in joints, for their reactions.
+    pub(super) fn bound(&self, at: &mut [Passive]) {
+        for (place, &(k, _)) in self.bearings.iter().enumerate() {
+            let limit = self.joint_friction.limit(place);
+            at[k].bounds = [-limit, limit];
+        }
+    }
+
     /// Adds the accelerations of the drivers to those of coordinates.
     pub(super) fn accelerate(
         &self,
@@ -320,7 +361,7 @@ impl PassiveForces {
         for (k, at) in at.iter_mut().enumerate() {
             let parts = self.rows.row(k).into_iter().zip(accelerations.clone());
             let sum: f64 = parts.map(|(partial, second)| partial * second).sum();
-            at.coordinate.derivatives[1] += sum;
+            at.coordinate.derivatives[1] = self.coasting[k] + sum;
         }
     }
 
@@ -344,12 +385,18 @@ impl PassiveForces {
         }
     }
 
-    /// Writes the forces that hold, and adds them to the equations of motion.
-    pub(super) fn exert(&self, at: &mut [Passive], motion: &mut EquationsOfMotion) {
+    /// Writes the forces that hold.
+    pub(super) fn write_holding(&self, at: &mut [Passive]) {
         for (&k, &force) in self.holding.iter().zip(&self.forces) {
             at[k].force = force;
-            let rate = at[k].coordinate.first();
-            motion.exert(self.rows.row(k).iter().copied(), force, rate);
+        }
+    }
+
+    /// Adds the forces that hold to the equations of motion.
+    pub(super) fn exert(&self, at: &[Passive], motion: &mut EquationsOfMotion) {
+        for (k, at) in at.iter().enumerate().filter(|(k, _)| self.is_held(*k)) {
+            let rate = at.coordinate.first();
+            motion.exert(self.rows.row(k).iter().copied(), at.force, rate);
         }
     }
 
@@ -382,7 +429,8 @@ impl PassiveForces {
         }
     }
 
-    /// Returns the changes of all coordinates along a direction, and writes those of forces that slide.
+    /// Returns the changes of all coordinates along a direction, and writes those of forces that slide,
+    /// but in joints.
     pub(super) fn changes(&self, sensitivity: &Sensitivity<'_>, changes: &mut [f64]) -> Vec<Jet> {
         let parameter = |id: ParameterId| sensitivity.parameter_value(id);
         let passive = self.list.iter().enumerate().zip(changes);
@@ -390,12 +438,29 @@ impl PassiveForces {
             let rate = sensitivity.rate(&*passive.relation);
             let sign = self.sliding(k, rate.value);
             *change = match &passive.cause {
-                Cause::Friction(law) if sign != 0.0 => law.along(&parameter, rate, sign).first(),
+                Cause::Friction(law) if sign != 0.0 && law.bearing.is_none() => {
+                    let one = Dual::new(1.0, [0.0]);
+                    law.along(&parameter, one, rate, sign).first()
+                }
                 _ => 0.0,
             };
             sensitivity.coordinate(&*passive.relation)
         });
         coordinates.collect()
+    }
+
+    /// Returns the changes of the friction in joints along a direction, from those of their reactions
+    /// where this friction stays as it is.
+    pub(super) fn joint_changes(
+        &mut self,
+        sensitivity: &Sensitivity<'_>,
+        reactions: &[[f64; 3]],
+    ) -> &[f64] {
+        let parameter = |id: ParameterId| sensitivity.parameter_value(id);
+        let rates = self.bearings.iter();
+        let rates = rates.map(|(k, _)| sensitivity.rate(&*self.list[*k].relation));
+        let rates: Vec<Dual> = rates.collect();
+        self.joint_friction.changes(&parameter, &rates, reactions)
     }
 
     /// Finds the changes of the forces that hold, so that held coordinates do not accelerate, where

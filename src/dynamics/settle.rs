@@ -8,7 +8,8 @@ use super::error::Error;
 use super::given::Given;
 use super::passive::{Cause, Mode};
 use super::triangular::ascend;
-use crate::kinematics::{Solver, StopLimit};
+use super::watch::FORCE_ROUNDING;
+use crate::kinematics::{self, Solver, StopLimit};
 use crate::mechanism::{Force, Load, Mechanism, Order, fixed, shown};
 
 /// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
@@ -17,6 +18,8 @@ const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
 const LOWEST_FALL: f64 = 1.0 / 64.0;
 /// Impacts at one instant, far more than several contacts make.
 const MOST_IMPACTS: usize = 100;
+/// Choices of what sticks, far more than it takes until they agree with the reactions.
+const MOST_CHOICES: usize = 50;
 /// A speed of so many roundings may be rest: 1e-8 radians or sizes of the mechanism per second. The
 /// instant of an event is not known much better.
 const SLOW: f64 = 1e6;
@@ -410,12 +413,71 @@ impl Equations {
     }
 
     /// Chooses which contacts stay closed and which friction sticks, by the accelerations.
+    ///
+    /// The bounds of friction in joints follow from the reactions, and these from the choice: it is made
+    /// again until it agrees with them.
+    ///
+    /// # Errors
+    ///
+    /// [`NoForce`](crate::kinematics::Error::NoForce) if it never does.
     fn choose(
         &mut self,
         solver: &mut Solver,
         given: &impl Given,
         time: f64,
         x: &[f64],
+        before: &[Mode],
+    ) -> Result<(), Error> {
+        let Some((first, _)) = self.passive.bearings.first() else {
+            return self.choose_for(solver, given, (time, x), before);
+        };
+        let force = self.passive.list[*first].index;
+        let released = self.passive.modes.clone();
+        for _ in 0..MOST_CHOICES {
+            self.passive.modes.clone_from(&released);
+            self.passive.joint_friction.freeze(true);
+            let chosen = self.evaluate(solver, given, time, x);
+            let chosen = chosen.and_then(|()| self.choose_for(solver, given, (time, x), before));
+            self.passive.joint_friction.freeze(false);
+            chosen?;
+            self.evaluate(solver, given, time, x)?;
+            if (0..released.len()).all(|k| released[k] != Mode::Free || self.agrees(k)) {
+                return Ok(());
+            }
+        }
+        Err(Error::Kinematics(kinematics::Error::NoForce {
+            force: solver.mechanism().forces[force].name.clone(),
+            reason: "neither sticks nor slides here: the reactions that it makes agree with neither",
+        }))
+    }
+
+    /// Returns whether the force of a passive force, or the acceleration of its coordinate, is one that
+    /// belongs to its mode.
+    fn agrees(&self, k: usize) -> bool {
+        let at = &self.point.passive[k];
+        match self.passive.modes[k] {
+            _ if self.passive.is_driven[k] => true,
+            Mode::Sticking => at.force.abs() < self.most_sticking(k),
+            mode @ (Mode::Growing | Mode::Falling) => {
+                mode.sign() * at.coordinate.second() >= -SLOW * at.rounding
+            }
+            mode if self.passive.is_held(k) => mode.sign() * at.force >= 0.0,
+            _ => true,
+        }
+    }
+
+    /// Returns the force up to which friction sticks; at its limit it does not, where the watch sees that
+    /// sticking ends.
+    fn most_sticking(&self, k: usize) -> f64 {
+        (1.0 - 4.0 * FORCE_ROUNDING) * self.point.passive[k].bounds[1]
+    }
+
+    /// Chooses, for friction in joints with the reactions at hand.
+    fn choose_for(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        (time, x): (f64, &[f64]),
         before: &[Mode],
     ) -> Result<(), Error> {
         loop {
@@ -440,12 +502,11 @@ impl Equations {
             let mut slides = false;
             for (&k, &force) in frictions.iter().zip(of_frictions) {
                 let at = &self.point.passive[k];
-                let [low, high] = at.bounds;
-                if low < force && force < high {
+                if force.abs() < self.most_sticking(k) {
                     continue;
                 }
                 // At its limit friction pushes against the motion that begins.
-                let grows = match low < high {
+                let grows = match at.bounds[0] < at.bounds[1] {
                     true => force < 0.0,
                     false => at.coordinate.second() > 0.0,
                 };

@@ -12,6 +12,8 @@ use crate::mechanism::{Load, Mechanism};
 /// Functions per passive force.
 pub(super) const FUNCTIONS: usize = 2;
 
+/// Part of a force that is its rounding: that of the equations of motion, of some bodies and joints.
+pub(super) const FORCE_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 /// Steps that are cut in a row before the end of the last one is taken for the instant: far more than
 /// the search takes.
 const MOST_CUTS: i32 = 80;
@@ -190,7 +192,7 @@ impl Function {
     fn slack(&self, after: &Self, scale: f64) -> f64 {
         match self.rate {
             Some(_) => self.rounding.max(after.rounding),
-            None => 64.0 * f64::EPSILON * scale.max(self.value.abs()).max(after.value.abs()),
+            None => FORCE_ROUNDING * scale.max(self.value.abs()).max(after.value.abs()),
         }
     }
 

@@ -85,8 +85,8 @@ pub use constraint::configuration::{
 pub use continuation::{Blocked, Progress, Reason};
 pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Remedy, Verdict};
 pub use forces::{
-    EquationsOfMotion, ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff,
-    Reported,
+    EquationsOfMotion, ForceParts, ForceQuantity, ForceSensitivity, Forces, JointFriction,
+    KnownMotion, LiftOff, Reported,
 };
 pub use linear::PivotOrder;
 pub(crate) use linear::{DenseLu, Factors, Singular};

@@ -11,7 +11,8 @@ use super::constraint::Constraint;
 use super::continuation::{Blocked, PathTracker, Progress, check_pose};
 use super::error::Error;
 use super::forces::{
-    self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff,
+    self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, JointFriction, KnownMotion,
+    LiftOff,
 };
 use super::origin::Origin;
 use super::path::{Curve, Path, Rates};
@@ -24,7 +25,9 @@ use super::start::initial_pose::{self, Assembly};
 use super::state::{Pose, SolverChoices, State};
 use super::system::System;
 use super::system::structure::Structure;
-use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism, Motion, Order, ParameterId};
+use crate::mechanism::{
+    BodyId, DriverId, Indeterminate, Jet, MarkerId, Mechanism, Motion, Order, ParameterId,
+};
 
 /// Solves position, velocity and acceleration of one mechanism.
 ///
@@ -476,6 +479,15 @@ impl Solver {
     #[must_use]
     pub fn forces(&self) -> Forces {
         Forces::new(&self.compiled)
+    }
+
+    /// Makes the storage for the friction in joints.
+    #[must_use]
+    pub fn joint_friction(&self) -> JointFriction {
+        let mechanism = self.mechanism();
+        let is_chosen = mechanism.outputs.indeterminate == Indeterminate::MinimumNorm;
+        let open = !is_chosen && !self.compiled.redundant.now.is_empty();
+        JointFriction::new(mechanism, open)
     }
 
     /// Solves the forces at the present pose for a motion that [`solve_rates`](Self::solve_rates)

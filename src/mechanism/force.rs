@@ -1,6 +1,6 @@
 //! Forces on a mechanism, besides gravity.
 
-use super::friction::FrictionLaw;
+use super::friction::{Bearing, FrictionLaw};
 use super::{Coordinate, Expression, MarkerId, Mechanism, Number, ParameterId, Unit, Variable};
 
 /// Force on a mechanism.
@@ -48,10 +48,19 @@ pub enum PassiveCause {
     /// A rigid stop, by its index: it pushes where something touches it.
     Stop(usize),
     /// Friction: it acts against the rate of the coordinate, and holds it at rest.
-    Friction(FrictionLaw),
+    Friction(Box<FrictionLaw>),
 }
 
 impl PassiveCause {
+    /// Returns the joint that presses on friction.
+    #[must_use]
+    pub fn bearing(&self) -> Option<&Bearing> {
+        match self {
+            Self::Friction(law) => law.bearing.as_ref(),
+            Self::Stop(_) => None,
+        }
+    }
+
     /// Returns the fault of parameters for which it is none, as the end of a sentence.
     #[must_use]
     pub fn fault(&self, mechanism: &Mechanism, parameters: &[f64]) -> Option<&'static str> {
@@ -64,8 +73,10 @@ impl PassiveCause {
             Self::Friction(law) => {
                 let value = |id: ParameterId| parameters[id.index()];
                 let [dry, sticking] = [law.coulomb.value(parameters), law.sticking(&value)];
-                let is_possible = dry >= 0.0 && sticking >= dry && law.viscous(&value) >= 0.0;
-                (!is_possible).then_some("has a negative force, or sticks with less than it slides")
+                let mut sizes = law.expressions().map(|size| size.value(parameters));
+                let is_possible = sizes.all(|size| size >= 0.0) && sticking >= dry;
+                (!is_possible)
+                    .then_some("has a negative number, or sticks with less than it slides")
             }
         }
     }
@@ -387,6 +398,23 @@ impl Load {
 }
 
 impl Mechanism {
+    /// Returns the friction that sticks.
+    pub fn frictions(&self) -> impl Iterator<Item = &FrictionLaw> {
+        self.forces.iter().filter_map(|force| match &force.load {
+            Load::Passive {
+                cause: PassiveCause::Friction(law),
+                ..
+            } => Some(&**law),
+            _ => None,
+        })
+    }
+
+    /// Returns whether friction acts in joints, by their reactions.
+    #[must_use]
+    pub fn has_joint_friction(&self) -> bool {
+        self.frictions().any(|law| law.bearing.is_some())
+    }
+
     /// Returns whether it has dynamics: a body with mass, or a force.
     #[must_use]
     pub fn has_dynamics(&self) -> bool {

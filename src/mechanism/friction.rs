@@ -3,30 +3,89 @@
 use super::{Expression, Number, ParameterId};
 
 /// Size of friction while something slides, and the limit up to which it sticks.
+///
+/// Its dry part is a force, or in a joint a coefficient that the [pressure](Bearing::pressure)
+/// multiplies.
 #[derive(Clone, Debug)]
 pub struct FrictionLaw {
-    /// Coulomb's force \[N or N m\].
+    /// Coulomb's force \[N or N m\], or coefficient \[1\].
     pub coulomb: Expression,
-    /// Largest force while it sticks \[N or N m\], `None` for Coulomb's.
+    /// Largest force or coefficient while it sticks, `None` for Coulomb's.
     pub sticking: Option<Expression>,
     /// Stribeck's speed \[m/s or rad/s\]: about so fast, the force has fallen from that of sticking
     /// to Coulomb's. `None` if it falls at once.
     pub stribeck: Option<Expression>,
     /// Coefficient of the part that grows with the speed \[N s/m or N m s/rad\].
     pub viscous: Option<Expression>,
+    /// The joint that presses the two sides on each other, `None` for friction of a given force.
+    pub bearing: Option<Bearing>,
+}
+
+/// Joint that presses the two sides of friction on each other.
+#[derive(Clone, Debug)]
+pub struct Bearing {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Its shape.
+    pub shape: BearingShape,
+}
+
+/// Shape of a [`Bearing`].
+#[derive(Clone, Debug)]
+pub enum BearingShape {
+    /// A round pin.
+    Pin {
+        /// Radius \[m\].
+        radius: Expression,
+    },
+    /// A straight guide.
+    Guide {
+        /// Length, with the second marker in the middle \[m\]; `None` where the pressure acts at one
+        /// point, or everywhere alike.
+        length: Option<Expression>,
+    },
+}
+
+impl Bearing {
+    /// Returns the force, or the torque, of friction per unit of its coefficient \[N or N m\], for force
+    /// and torque of the joint at its second marker: a norm of these.
+    ///
+    /// A guide bears a force N and a torque M with N/2 + M/L and N/2 − M/L at its ends.
+    pub fn pressure<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        [fx, fy, torque]: [N; 3],
+    ) -> N {
+        let zero = N::constant(0.0);
+        let force = match fx.is_zero() && fy.is_zero() {
+            // A norm has no derivative there.
+            true => zero,
+            false => fx.hypot(fy),
+        };
+        match &self.shape {
+            BearingShape::Pin { radius } => force * radius.evaluate(parameter, zero),
+            BearingShape::Guide { length: None } => force,
+            BearingShape::Guide {
+                length: Some(length),
+            } => force.larger(torque.abs() * 2.0 / length.evaluate(parameter, zero)),
+        }
+    }
 }
 
 impl FrictionLaw {
-    /// Returns the force against the motion at a rate of the coordinate in the direction of the
-    /// motion: [`dry`](Self::dry) and viscous friction.
-    fn sliding<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, speed: N) -> N {
-        self.dry(parameter, speed) + self.viscous(parameter) * speed
-    }
-
-    /// Returns the force along a coordinate that slides at this rate in the direction of a sign.
-    pub fn along<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N, sign: f64) -> N {
+    /// Returns the force along a coordinate that slides at this rate in the direction of a sign:
+    /// [`dry`](Self::dry) friction under a pressure, and viscous friction.
+    pub fn along<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        pressure: N,
+        rate: N,
+        sign: f64,
+    ) -> N {
+        let speed = rate * sign;
+        let against = self.dry(parameter, speed) * pressure + self.viscous(parameter) * speed;
         // No negative zero at rest.
-        self.sliding(parameter, rate * sign) * (0.0 - sign)
+        against * (0.0 - sign)
     }
 
     /// Returns the direction in which a coordinate slides: zero where it rests.
@@ -62,9 +121,15 @@ impl FrictionLaw {
 
     /// Returns its expressions.
     pub fn expressions(&self) -> impl Iterator<Item = &Expression> {
-        let others = [&self.sticking, &self.stribeck, &self.viscous];
-        [&self.coulomb]
-            .into_iter()
-            .chain(others.into_iter().flatten())
+        let of_bearing = self
+            .bearing
+            .as_ref()
+            .and_then(|bearing| match &bearing.shape {
+                BearingShape::Pin { radius } => Some(radius),
+                BearingShape::Guide { length } => length.as_ref(),
+            });
+        let others = [&self.sticking, &self.stribeck, &self.viscous].map(Option::as_ref);
+        let others = others.into_iter().chain([of_bearing]);
+        [&self.coulomb].into_iter().chain(others.flatten())
     }
 }

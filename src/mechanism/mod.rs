@@ -70,7 +70,7 @@ pub use force::{
     ElasticStop, Force, ForceComponent, ForceLaw, Load, PassiveCause, RegularisedFriction, Spring,
 };
 pub use force_quantity::ForceQuantity;
-pub use friction::FrictionLaw;
+pub use friction::{Bearing, BearingShape, FrictionLaw};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;

@@ -124,6 +124,9 @@ impl<'a> DependencyTable<'a> {
             Quantity::Output(OutputSource::Force(force)) => Some(match force {
                 ForceQuantity::Inertia(_) | ForceQuantity::PotentialEnergy => Order::Position,
                 ForceQuantity::Applied(force, _) if self.is_passive(force) => Order::Acceleration,
+                ForceQuantity::Bias(_) if self.mechanism.has_joint_friction() => {
+                    Order::Acceleration
+                }
                 ForceQuantity::Bias(_)
                 | ForceQuantity::Applied(..)
                 | ForceQuantity::KineticEnergy => Order::Velocity,
@@ -143,8 +146,12 @@ impl<'a> DependencyTable<'a> {
 
     /// Returns whether a force follows from all others and the masses.
     fn is_passive(&self, force: usize) -> bool {
-        let is_passive = matches!(self.mechanism.forces[force].load, Load::Passive { .. });
-        is_passive && self.mechanism.has_freedoms()
+        match &self.mechanism.forces[force].load {
+            Load::Passive { cause, .. } => {
+                self.mechanism.has_freedoms() || cause.bearing().is_some()
+            }
+            _ => false,
+        }
     }
 
     /// Returns the dependencies on those of the quantities that are variables.

@@ -109,6 +109,12 @@ impl ForceSensitivity {
         self.values[self.places.of(quantity)]
     }
 
+    /// Returns the changes of force and torque that a joint exerts at its second marker.
+    #[must_use]
+    pub fn reaction(&self, joint: usize) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.raw_change(ForceQuantity::Reaction(joint, k)))
+    }
+
     /// Returns the derivative of a quantity.
     ///
     /// # Errors

@@ -143,6 +143,12 @@ impl Forces {
         }
     }
 
+    /// Returns force and torque that a joint exerts at its second marker \[N and N m\].
+    #[must_use]
+    pub fn reaction(&self, joint: usize) -> [f64; 3] {
+        self.results.reactions[joint]
+    }
+
     /// Returns the number of joints that can only push.
     #[must_use]
     pub fn contacts(&self) -> usize {

@@ -5,12 +5,12 @@ use crate::kinematics::analysis::Direction;
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::kinematics::forces::{
-    ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff,
+    ForceParts, ForceQuantity, ForceSensitivity, Forces, JointFriction, KnownMotion, LiftOff,
 };
 use crate::kinematics::path::Rates;
 use crate::kinematics::solver::Solver;
 use crate::mechanism::{
-    DerivedMeasure, DriverId, FrictionLaw, Jet, Load, Mechanism, ParameterId, PassiveCause,
+    DerivedMeasure, DriverId, Dual, FrictionLaw, Jet, Load, Mechanism, ParameterId, PassiveCause,
 };
 
 /// The rates at the pose of a [`Solver`] and, where they are [sought](Self::seek_forces), the
@@ -61,8 +61,20 @@ pub struct Solution {
     parts: ForceParts,
     /// Whether each contact pulls.
     lifted: Vec<bool>,
-    /// Friction of a mechanism without freedoms, by its load; with freedoms their motion tells the loads.
-    frictions: Vec<(usize, Box<dyn Constraint>, FrictionLaw)>,
+    /// Friction of a mechanism without freedoms, whose motion would tell the loads, in their order.
+    frictions: Vec<Friction>,
+    joint_friction: JointFriction,
+}
+
+/// Friction along a coordinate that drivers move.
+#[derive(Debug)]
+struct Friction {
+    /// Index of its load.
+    load: usize,
+    relation: Box<dyn Constraint>,
+    law: Box<FrictionLaw>,
+    /// Index of the joint, for friction in one.
+    joint: Option<usize>,
 }
 
 impl Solution {
@@ -78,6 +90,7 @@ impl Solution {
             parts: ForceParts::ALL,
             lifted: Vec::new(),
             frictions: Vec::new(),
+            joint_friction: JointFriction::default(),
         }
     }
 
@@ -88,6 +101,9 @@ impl Solution {
         self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
         self.frictions = frictions(solver.mechanism());
+        if !self.frictions.is_empty() {
+            self.joint_friction = solver.joint_friction();
+        }
         let outputs = &solver.mechanism().outputs;
         let mut measures = solver.mechanism().derived.iter();
         if outputs.joints.is_empty()
@@ -150,16 +166,60 @@ impl Solution {
     ///
     /// Those of [`Solver::solve_forces`].
     pub fn solve_forces(&mut self, solver: &mut Solver, parts: ForceParts) -> Result<(), Error> {
-        let parameters = &solver.pose().parameters;
-        for (load, relation, law) in &self.frictions {
-            let rate = solver.coordinate(&**relation, &self.rates).first();
+        let Self {
+            rates,
+            driver_rates,
+            loads,
+            forces: Some(forces),
+            frictions,
+            joint_friction,
+            ..
+        } = self
+        else {
+            return Ok(());
+        };
+        if !joint_friction.is_empty() {
+            joint_friction.set_parameters(&solver.pose().parameters);
+        }
+        let mut place = 0;
+        for friction in &*frictions {
+            let rate = solver.coordinate(&*friction.relation, rates).first();
             let sign = FrictionLaw::direction(rate);
-            self.loads[*load] = law.along(&|id: ParameterId| parameters[id.index()], rate, sign);
+            if friction.joint.is_some() {
+                joint_friction.set_motion(place, rate, sign);
+                place += 1;
+            } else {
+                let value = |id: ParameterId| solver.pose().parameters[id.index()];
+                loads[friction.load] = friction.law.along(&value, 1.0, rate, sign);
+            }
         }
-        match self.split() {
-            (motion, Some(forces)) => solver.solve_forces(motion, parts, forces),
-            (_, None) => Ok(()),
+        let mut solve = |loads: &[f64], forces: &mut Forces, parts| {
+            let motion = KnownMotion {
+                rates,
+                driver_rates,
+                inputs: loads,
+            };
+            solver.solve_forces(motion, parts, forces)
+        };
+        if joint_friction.is_empty() {
+            return solve(loads, forces, parts);
         }
+        let parts = ForceParts {
+            reactions: true,
+            ..parts
+        };
+        joint_friction.solve(|sizes, reactions| {
+            let in_joints = frictions.iter().filter(|friction| friction.joint.is_some());
+            for (friction, size) in in_joints.zip(sizes) {
+                loads[friction.load] = *size;
+            }
+            solve(loads, forces, parts)?;
+            let joints = frictions.iter().filter_map(|friction| friction.joint);
+            for (reaction, joint) in reactions.iter_mut().zip(joints) {
+                *reaction = forces.reaction(joint);
+            }
+            Ok(())
+        })
     }
 
     /// Returns a force, not a number unless forces are sought.
@@ -209,22 +269,57 @@ impl Solution {
         direction: &Direction,
         loads: &[f64],
     ) -> Result<Option<ForceSensitivity>, Error> {
+        let Self {
+            rates,
+            driver_rates,
+            loads: inputs,
+            forces: Some(forces),
+            frictions,
+            joint_friction,
+            ..
+        } = self
+        else {
+            return Ok(None);
+        };
         let mut loads = loads.to_vec();
-        if !self.frictions.is_empty() {
-            let along = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
-            for (load, relation, law) in &self.frictions {
-                let rate = along.rate(&**relation);
+        let motion = KnownMotion {
+            rates,
+            driver_rates,
+            inputs,
+        };
+        let mut of_joints = Vec::new();
+        if !frictions.is_empty() {
+            let along = solver.sensitivity(rates, driver_rates, direction)?;
+            for friction in &*frictions {
+                let rate = along.rate(&*friction.relation);
                 let sign = FrictionLaw::direction(rate.value);
-                let force = law.along(&|id: ParameterId| along.parameter_value(id), rate, sign);
-                loads[*load] = force.first();
+                let value = |id: ParameterId| along.parameter_value(id);
+                loads[friction.load] = match friction.joint {
+                    Some(_) => {
+                        of_joints.push(rate);
+                        0.0
+                    }
+                    None => {
+                        let one = Dual::new(1.0, [0.0]);
+                        friction.law.along(&value, one, rate, sign).first()
+                    }
+                };
             }
         }
-        match self.split() {
-            (motion, Some(forces)) => solver
-                .force_sensitivity(motion, direction, &loads, forces)
-                .map(Some),
-            (_, None) => Ok(None),
+        if !of_joints.is_empty() {
+            let along = solver.force_sensitivity(motion, direction, &loads, forces)?;
+            let joints = frictions.iter().filter_map(|friction| friction.joint);
+            let reactions: Vec<_> = joints.map(|joint| along.reaction(joint)).collect();
+            let along = solver.sensitivity(rates, driver_rates, direction)?;
+            let value = |id: ParameterId| along.parameter_value(id);
+            let changes = joint_friction.changes(&value, &of_joints, &reactions);
+            let in_joints = frictions.iter().filter(|friction| friction.joint.is_some());
+            for (friction, change) in in_joints.zip(changes) {
+                loads[friction.load] = *change;
+            }
         }
+        let changes = solver.force_sensitivity(motion, direction, &loads, forces)?;
+        Ok(Some(changes))
     }
 
     /// Returns the rounding error of a driver's effort \[N or N m\], zero unless forces are sought.
@@ -250,20 +345,10 @@ impl Solution {
             .map(|forces| solver.lift_offs(forces, lifted));
         begun.into_iter().flatten()
     }
-
-    /// Returns the motion, and the forces that are solved for it.
-    fn split(&mut self) -> (KnownMotion<'_>, Option<&mut Forces>) {
-        let motion = KnownMotion {
-            rates: &self.rates,
-            driver_rates: &self.driver_rates,
-            inputs: &self.loads,
-        };
-        (motion, self.forces.as_mut())
-    }
 }
 
-/// Returns the friction of a mechanism without freedoms, by the places of its loads.
-fn frictions(mechanism: &Mechanism) -> Vec<(usize, Box<dyn Constraint>, FrictionLaw)> {
+/// Returns the friction of a mechanism without freedoms.
+fn frictions(mechanism: &Mechanism) -> Vec<Friction> {
     if mechanism.has_freedoms() {
         return Vec::new();
     }
@@ -279,7 +364,11 @@ fn frictions(mechanism: &Mechanism) -> Vec<(usize, Box<dyn Constraint>, Friction
             _ => None,
         });
     let frictions = loads.zip(passive);
-    let frictions =
-        frictions.map(|(load, (coordinate, law))| (load, of_coordinate(coordinate), law.clone()));
+    let frictions = frictions.map(|(load, (coordinate, law))| Friction {
+        load,
+        relation: of_coordinate(coordinate),
+        joint: law.bearing.as_ref().map(|bearing| bearing.joint),
+        law: law.clone(),
+    });
     frictions.collect()
 }

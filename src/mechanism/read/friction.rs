@@ -1,13 +1,17 @@
-//! Friction along coordinates.
+//! Friction along coordinates and in joints.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::{Force, ForceLaw, FrictionLaw, Load, PassiveCause, RegularisedFriction};
+use crate::mechanism::{
+    Bearing, BearingShape, Force, ForceLaw, FrictionLaw, Joint, JointKind, Load, PassiveCause,
+    RegularisedFriction, Span,
+};
 
 use super::context::Context;
-use super::kind::{Entry, Text};
-use super::number::{NUMBER, Quantity};
+use super::kind::{AnyOf, Entry, Fields, Text};
+use super::number::{LENGTH, NUMBER, Quantity, RATIO};
 use super::placed::{Placed, Placing};
-use super::table::table;
+use super::reference::HolderName;
+use super::table::{Field, table};
 
 table! {
     /// Friction along a coordinate: it acts against its rate, and holds it at rest.
@@ -30,43 +34,68 @@ table! {
     }
 }
 
-/// Friction of either shape.
-pub(super) type AnyFriction = Placed<FrictionKeys<'static>>;
+table! {
+    /// Friction in a joint, in proportion to its reaction.
+    struct JointFrictionKeys<'a> {
+        /// A revolute, translational or slot joint.
+        #[required("\"A\"")]
+        joint: usize = HolderName,
+        /// Coefficient of friction while it slides.
+        #[required("0.1")]
+        coefficient: Quantity = RATIO.not_negative(),
+        /// Coefficient while it sticks; the other one if left out.
+        r#static: Quantity = RATIO.not_negative(),
+        /// Speed of Stribeck [m/s or rad/s]: about so fast, the coefficient has fallen from `static` to
+        /// `coefficient`. If left out it falls at once.
+        stribeck: Quantity = NUMBER.positive(),
+        /// Coefficient of viscous friction [N.s/m or N.m.s/rad].
+        viscous: Quantity = NUMBER.not_negative(),
+        /// Radius of the pin of a revolute joint.
+        radius: Quantity = LENGTH.positive(),
+        /// Length of the guide of a translational joint, with the second marker in its middle: it bears
+        /// the torque of the joint at its ends. If left out the torque makes no friction.
+        length: Quantity = LENGTH.positive(),
+        /// Description in one line.
+        description: String = Text,
+    }
+}
+
+/// Friction of any shape.
+pub(super) type AnyFriction = AnyOf<Placed<FrictionKeys<'static>>, JointFrictionKeys<'static>>;
 
 const PLACING: Placing = Placing {
     noun: "friction",
     verb: "slow",
     code: code::FRICTION_COORDINATE,
+    or: ", or `joint` for the friction that its reaction makes",
 };
 
 impl<'a> Context<'a> {
-    /// Reads friction, after the measures and drivers.
-    pub(super) fn friction(&mut self, entry: Entry<'a>) -> Option<Force> {
+    /// Reads friction, after the measures, drivers and joints; these are `None` if some cannot be read.
+    pub(super) fn friction(&mut self, entry: Entry<'a>, joints: Option<&[Joint]>) -> Option<Force> {
+        let fields = self.entry_fields(entry, PLACING.noun)?;
+        if fields.table.contains_key("joint") {
+            return self.joint_friction(entry, &fields, joints);
+        }
         let (coordinate, _, keys) = self.placed::<FrictionKeys<'a>>(entry, &PLACING)?;
-        let coulomb = keys.force.number();
-        if let (Some(coulomb), Some(sticking)) = (coulomb, keys.r#static.number())
-            && sticking < coulomb
-        {
-            let message = format!("{} sticks with less than it slides", keys.owner.subject);
-            self.error(code::OUT_OF_RANGE, keys.r#static.span.clone(), message)
-                .suggest("`static` is at least `force`");
-        }
-        if let (Some(span), None) = (&keys.stribeck.key, &keys.r#static.key) {
-            let message = format!("{} has `stribeck`, but no `static`", keys.owner.subject);
-            self.error(code::UNKNOWN_KEY, span.clone(), message)
-                .suggest("the force falls from `static` to `force`");
-        }
+        self.check_static(
+            &keys.owner,
+            ("force", &keys.force),
+            &keys.r#static,
+            &keys.stribeck.key,
+        );
         let coordinate = coordinate?;
         let law = FrictionLaw {
             coulomb: keys.force.expression()?,
             sticking: keys.r#static.optional()?.map(|q| q.expression),
             stribeck: keys.stribeck.optional()?.map(|q| q.expression),
             viscous: keys.viscous.optional()?.map(|q| q.expression),
+            bearing: None,
         };
         let load = match keys.regularised.optional()? {
             None => Load::Passive {
                 coordinate,
-                cause: PassiveCause::Friction(law),
+                cause: PassiveCause::Friction(Box::new(law)),
             },
             Some(speed) => Load::Coordinate {
                 coordinate,
@@ -84,5 +113,108 @@ impl<'a> Context<'a> {
             description: keys.description.value.unwrap_or_default(),
             load,
         })
+    }
+
+    /// Reads friction in a joint.
+    fn joint_friction(
+        &mut self,
+        entry: Entry<'a>,
+        fields: &Fields<'a>,
+        joints: Option<&[Joint]>,
+    ) -> Option<Force> {
+        let keys = self.table::<JointFrictionKeys<'a>>(fields);
+        self.check_static(
+            &keys.owner,
+            ("coefficient", &keys.coefficient),
+            &keys.r#static,
+            &keys.stribeck.key,
+        );
+        let index = keys.joint.value?;
+        // None is behind the joints: a constraint.
+        let joint = joints?.get(index);
+        let kind = joint.map(|joint| &joint.kind);
+        let coordinate = joint.and_then(Joint::free_coordinate);
+        let (needed, foreign) = match kind {
+            Some(JointKind::Revolute) => (Some(&keys.radius), &keys.length),
+            Some(JointKind::Slot) if keys.length.key.is_some() => (None, &keys.length),
+            _ => (None, &keys.radius),
+        };
+        let fault = match (coordinate, needed, &foreign.key) {
+            (None, ..) => Some((
+                code::FRICTION_COORDINATE,
+                keys.joint.span.clone(),
+                format!("{} is in no joint that slides", keys.owner.subject),
+                "friction acts in joints of type `revolute`, `translational` and `slot`; for others give \
+                 `coordinate`, `markers` and `force`",
+            )),
+            (_, Some(radius), _) if radius.key.is_none() => Some((
+                code::MISSING_KEY,
+                keys.owner.place.clone(),
+                format!("{} has no `radius`", keys.owner.subject),
+                "the friction of a pin is a torque: give the pin's radius, such as `radius = \"8*mm\"`",
+            )),
+            (.., Some(key)) => Some((
+                code::UNKNOWN_KEY,
+                key.clone(),
+                format!(
+                    "{} has a key that its joint has no use for",
+                    keys.owner.subject
+                ),
+                "a `revolute` joint has a `radius`, a `translational` one a `length`",
+            )),
+            _ => None,
+        };
+        if let Some((code, span, message, help)) = fault {
+            self.error(code, span, message).suggest(help);
+            return None;
+        }
+        let shape = match keys.radius.optional()? {
+            Some(radius) => BearingShape::Pin {
+                radius: radius.expression,
+            },
+            None => BearingShape::Guide {
+                length: keys.length.optional()?.map(|q| q.expression),
+            },
+        };
+        let law = FrictionLaw {
+            coulomb: keys.coefficient.expression()?,
+            sticking: keys.r#static.optional()?.map(|q| q.expression),
+            stribeck: keys.stribeck.optional()?.map(|q| q.expression),
+            viscous: keys.viscous.optional()?.map(|q| q.expression),
+            bearing: Some(Bearing {
+                joint: index,
+                shape,
+            }),
+        };
+        Some(Force {
+            name: entry.name().to_owned(),
+            description: keys.description.value.unwrap_or_default(),
+            load: Load::Passive {
+                coordinate: coordinate?,
+                cause: PassiveCause::Friction(Box::new(law)),
+            },
+        })
+    }
+
+    /// Checks that friction sticks with at least as much as it slides, and falls from one to the other.
+    fn check_static(
+        &mut self,
+        owner: &Fields<'a>,
+        (key, sliding): (&str, &Field<Quantity>),
+        sticking: &Field<Quantity>,
+        stribeck: &Option<Span>,
+    ) {
+        if let (Some(sliding), Some(most)) = (sliding.number(), sticking.number())
+            && most < sliding
+        {
+            let message = format!("{} sticks with less than it slides", owner.subject);
+            self.error(code::OUT_OF_RANGE, sticking.span.clone(), message)
+                .suggest(format!("`static` is at least `{key}`"));
+        }
+        if let (Some(span), None) = (stribeck, &sticking.key) {
+            let message = format!("{} has `stribeck`, but no `static`", owner.subject);
+            self.error(code::UNKNOWN_KEY, span.clone(), message)
+                .suggest(format!("friction falls from `static` to `{key}`"));
+        }
     }
 }

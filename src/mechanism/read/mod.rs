@@ -138,7 +138,11 @@ impl<'a> Context<'a> {
         let exerts = |stop: &Stop| has_freedoms || !stop.is_rigid();
         let of_stops = stops.iter().enumerate().filter(|(_, stop)| exerts(stop));
         forces.extend(of_stops.map(|(index, stop)| stop.force(index)));
-        forces.extend(self.each(&root.friction, Self::friction));
+        let joints = self.each(&root.joints, Self::joint);
+        // Indices are known once all joints have been read.
+        let all = (joints.len() == root.joints.items().len()).then_some(&*joints);
+        let friction = |context: &mut Self, entry| context.friction(entry, all);
+        forces.extend(self.each(&root.friction, friction));
         let mut mechanism = Mechanism {
             name: root.name.value.unwrap_or_default(),
             description: root.description.value.unwrap_or_default(),
@@ -150,7 +154,7 @@ impl<'a> Context<'a> {
             derivation_order,
             bodies,
             markers,
-            joints: self.each(&root.joints, Self::joint),
+            joints,
             constraints: self.each(&root.constraints, Self::constraint),
             drivers,
             measures,

@@ -43,6 +43,8 @@ pub(super) struct Placing {
     pub(super) noun: &'static str,
     pub(super) verb: &'static str,
     pub(super) code: &'static str,
+    /// Another way to say where it acts, as the end of a sentence.
+    pub(super) or: &'static str,
 }
 
 impl<'a> Context<'a> {
@@ -53,7 +55,12 @@ impl<'a> Context<'a> {
         entry: Entry<'a>,
         placing: &Placing,
     ) -> Option<(Option<Coordinate>, Option<String>, K)> {
-        let Placing { noun, verb, code } = *placing;
+        let Placing {
+            noun,
+            verb,
+            code,
+            or,
+        } = *placing;
         let fields = self.entry_fields(entry, noun)?;
         let has = |key| fields.table.contains_key(key);
         let (place, has) = match (has("coordinate"), has("of")) {
@@ -76,7 +83,7 @@ impl<'a> Context<'a> {
         self.error(code, fields.place.clone(), message)
             .suggest(format!(
                 "give `of = \"MEASURE\"` to {verb} a measure or a driver, or `coordinate` and \
-                 `markers`"
+                 `markers`{or}"
             ));
         None
     }

@@ -36,6 +36,7 @@ const PLACING: Placing = Placing {
     noun: "stop",
     verb: "limit",
     code: code::STOP_COORDINATE,
+    or: "",
 };
 
 impl<'a> Context<'a> {

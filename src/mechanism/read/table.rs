@@ -209,9 +209,8 @@ pub(super) const fn key_name(identifier: &'static str) -> &'static str {
 }
 
 /// Help for a key that other programs have in their joints.
-const FRICTION: &str = "friction acts along a coordinate, in a section of its own: `[friction]` with \
-                        `pin = { coordinate = \"angle\", markers = [\"ground.O\", \"rod.O\"], \
-                        force = 0.1 }`";
+const FRICTION: &str = "friction has a section of its own: `[friction]` with \
+                        `pin = { joint = \"A\", coefficient = 0.1, radius = \"8*mm\" }`";
 
 impl<'a> Context<'a> {
     /// Reads a table; reports unknown, missing and conflicting keys.

@@ -364,3 +364,43 @@ fn a_joint_that_was_drawn_apart_is_warned_of() {
     let report = stdout(&biela(&["check", &file, "--format", "json"]).success());
     assert!(report.contains(says), "{report}");
 }
+
+/// A block of 100 kg on a slope: friction of 0.2 holds it at 10°, not at 15°.
+#[test]
+fn self_locking_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let slow = |angle: f64| {
+        let file = folder.path().join("slope.toml");
+        let text = format!(
+            r#"
+format = 1
+name = "slope"
+[ground.markers]
+O = [0, 0, "{angle}*deg"]
+[bodies.block]
+mass = 100
+markers = {{ P = [0, 0, "{angle}*deg"] }}
+[joints]
+rail = {{ type = "translational", markers = ["ground.O", "block.P"] }}
+[drivers]
+way = {{ coordinate = "x", markers = ["ground.O", "block.P"], start = 0 }}
+[friction]
+shoe = {{ joint = "rail", coefficient = 0.2 }}
+"#
+        );
+        std::fs::write(&file, text).unwrap();
+        let file = file.to_str().unwrap();
+        let json = stdout(&biela(&["check", file, "--format", "json"]).success());
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let (sine, cosine) = angle.to_radians().sin_cos();
+        for (place, sign) in [(0, 1.0), (1, -1.0)] {
+            let effort = &json["assembled"]["slow_motion"][0]["efforts"][place];
+            let wanted = 981.0 * (sine + sign * 0.2 * cosine);
+            assert!((effort.as_f64().unwrap() - wanted).abs() < 1e-9 * wanted.abs());
+        }
+        let text = stdout(&biela(&["check", file]).success());
+        text.lines().last().unwrap().to_owned()
+    };
+    insta::assert_snapshot!(slow(10.0), @"  way.effort in slow motion: 363.568 N as it grows, -22.8704 N as it falls: self-locking");
+    insta::assert_snapshot!(slow(15.0), @"  way.effort in slow motion: 443.416 N as it grows, 64.3868 N as it falls");
+}

@@ -8,6 +8,7 @@ mod energy;
 mod fmu;
 mod friction;
 mod invariance;
+mod joint_friction;
 mod loaded;
 mod published;
 mod redundant;

@@ -50,10 +50,22 @@ fn chain(random: &mut Random) -> String {
             )
             .expect("a string takes it");
         }
-        if random.number() < 0.7 {
+        let sticking = random.between(1.0, 1.5);
+        if random.number() < 0.35 {
             let coulomb = random.between(0.01, 2.0);
-            let sticking = coulomb * random.between(1.0, 1.5);
+            let sticking = coulomb * sticking;
             writeln!(friction, "friction_{name} = {{ of = \"{name}\", force = {coulomb:.3}, static = {sticking:.4} }}").expect("a string takes it");
+        } else if random.number() < 0.6 {
+            let coefficient = random.between(0.05, 0.4);
+            let sticking = coefficient * sticking;
+            let place = match name.strip_prefix("turn") {
+                Some(rod) => format!(
+                    "joint = \"pin{rod}\", radius = {:.3}",
+                    random.between(0.005, 0.03)
+                ),
+                None => "joint = \"guide\"".to_owned(),
+            };
+            writeln!(friction, "friction_{name} = {{ {place}, coefficient = {coefficient:.3}, static = {sticking:.4} }}").expect("a string takes it");
         }
     };
     let mut last = "ground.O".to_owned();
@@ -96,6 +108,7 @@ fn chains_keep_their_balances() {
     for case in 0..30 {
         let mut random = Random(case);
         let text = chain(&mut random);
+
         let mut run = Run::new(&parse(&text), 1e-9, Fed::default());
         let begun = Instant::now();
         let mut events = 0;

@@ -16,7 +16,7 @@ const MARK: f64 = 1e-8;
 const G: f64 = 9.81;
 
 /// A body of 2 kg on a straight guide at an angle \[deg\] to the level, with its place `way` along it.
-fn slider(angle: f64, start: f64, velocity: f64, parts: &str) -> String {
+pub(super) fn slider(angle: f64, start: f64, velocity: f64, parts: &str) -> String {
     format!(
         r#"
 format = 1
@@ -36,7 +36,7 @@ way = {{ coordinate = "x", markers = ["ground.O", "slider.P"], start = {start}, 
 }
 
 /// A rod of 1 m and 1 kg that hangs at its end, level at first, with its angle `swing`.
-fn pendulum(parts: &str) -> String {
+pub(super) fn pendulum(parts: &str) -> String {
     format!(
         r#"
 format = 1
@@ -79,7 +79,7 @@ belt_guide = {{ type = "translational", markers = ["ground.O", "belt.B"] }}
 }
 
 /// Runs to a time in steps, and returns the events; the joints stay closed and no energy appears.
-fn played(run: &mut Run, until: f64, steps: u32) -> Vec<Event> {
+pub(super) fn played(run: &mut Run, until: f64, steps: u32) -> Vec<Event> {
     let mut events = Vec::new();
     let start = run.solver.pose().time;
     for step in 1..=steps {
@@ -89,7 +89,7 @@ fn played(run: &mut Run, until: f64, steps: u32) -> Vec<Event> {
     events
 }
 
-fn assert_near(value: f64, truth: f64) {
+pub(super) fn assert_near(value: f64, truth: f64) {
     let error = (value - truth).abs();
     assert!(error < MARK * (1.0 + truth.abs()), "{value} {truth}");
 }
@@ -109,7 +109,7 @@ fn assert_events(events: &[Event], expected: &[(f64, EventKind)]) {
 }
 
 /// Runs a mechanism at once and in many steps, with the same events and the same end.
-fn check(text: &str, until: f64, expected: &[(f64, EventKind)], state: [f64; 2]) -> Run {
+pub(super) fn check(text: &str, until: f64, expected: &[(f64, EventKind)], state: [f64; 2]) -> Run {
     let mut runs = [1, 37].map(|steps| {
         let mut run = Run::new(&parse(text), TOLERANCE, Fed::default());
         assert_events(&played(&mut run, until, steps), expected);
@@ -488,7 +488,7 @@ fn impossible_numbers_are_named() {
     for (parameters, message) in [
         (
             [-1.0, 0.5],
-            "force `rail` has a negative force, or sticks with less than it slides",
+            "force `rail` has a negative number, or sticks with less than it slides",
         ),
         (
             [1.0, 1.5],

@@ -11,6 +11,7 @@
 //! | `invariance` | other freedoms, names, orders, places; time reversed |
 //! | `refused` | what has no inertia, what meets a dead point |
 //! | `events` | stops and friction against closed forms |
+//! | `joint_friction` | friction that grows with the reaction of its joint |
 //! | `chains` | random chains with stops and friction |
 //! | `state` | saved and restored |
 
@@ -18,6 +19,7 @@ mod chains;
 mod closed_form;
 mod events;
 mod invariance;
+mod joint_friction;
 mod lagrange;
 mod minimal;
 mod pendulum;

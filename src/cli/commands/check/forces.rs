@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use crate::kinematics::{Error, ForceQuantity, Output, OutputSource, Solution, Solver};
-use crate::mechanism::{Expression, Indeterminate, Mechanism, shown};
+use crate::mechanism::{DriverId, Expression, Indeterminate, Jet, Mechanism, Unit, shown};
 
 /// Magnitude below which a force of a few newtons is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -17,6 +17,56 @@ pub(super) struct Forces {
     pub(super) values: Vec<(String, f64, &'static str)>,
     /// Joints and constraints with indeterminate reactions.
     pub(super) indeterminate: Vec<String>,
+    /// Efforts of drivers against friction.
+    pub(super) slow: Vec<SlowMotion>,
+}
+
+/// Effort of a driver that moves slowly, against friction and the load.
+pub(super) struct SlowMotion {
+    /// Name of the driver.
+    pub(super) driver: String,
+    /// Efforts as the coordinate grows and as it falls \[N or N m\]; `None` where the mechanism jams.
+    pub(super) efforts: [Option<f64>; 2],
+    unit: Unit,
+}
+
+impl SlowMotion {
+    /// Solves the effort of each driver at the solver's pose, with all others at rest.
+    fn of_drivers(solver: &mut Solver, solution: &mut Solution) -> Vec<Self> {
+        /// Speed \[rad/s\], or in sizes of the mechanism per second, whose square is rounding.
+        const SLOW: f64 = 1e-9;
+        let mechanism = Arc::clone(solver.mechanism());
+        if mechanism.has_freedoms() || mechanism.frictions().next().is_none() {
+            return Vec::new();
+        }
+        let rates = solution.driver_rates.clone();
+        let drivers = mechanism.drivers.iter().enumerate();
+        let all = drivers.map(|(index, driver)| {
+            let kind = driver.coordinate.kind;
+            let speed = SLOW * if kind.is_angle() { 1.0 } else { solver.size() };
+            let efforts = [speed, -speed].map(|speed| {
+                solution.driver_rates.fill(Jet::constant(0.0));
+                solution.driver_rates[index].derivatives[0] = speed;
+                solution.solve(solver).ok()?;
+                Some(solution.force(ForceQuantity::Effort(DriverId(index))))
+            });
+            Self {
+                driver: driver.name.clone(),
+                efforts,
+                unit: kind.effort_unit(),
+            }
+        });
+        let all = all.collect();
+        solution.driver_rates = rates;
+        all
+    }
+
+    /// Returns whether the driver stays where it is without an effort, as the load does not overcome
+    /// friction.
+    pub(super) fn is_self_locking(&self) -> bool {
+        let [grows, falls] = self.efforts;
+        grows.is_none_or(|effort| effort >= 0.0) && falls.is_none_or(|effort| effort <= 0.0)
+    }
 }
 
 impl Forces {
@@ -55,6 +105,7 @@ impl Forces {
             (!trivial).then_some((output.name, value, output.unit.name))
         });
         let values = values.collect();
+        let slow = SlowMotion::of_drivers(solver, &mut solution);
         let indeterminate = solver.indeterminate();
         let names = indeterminate
             .iter()
@@ -63,6 +114,7 @@ impl Forces {
             masses,
             values,
             indeterminate: names.collect(),
+            slow,
         })
     }
 
@@ -79,6 +131,23 @@ impl Forces {
         }
         for (name, value, unit) in &self.values {
             let _ = writeln!(out, "  {name} = {} {unit}", shown(*value));
+        }
+        for slow in &self.slow {
+            let [grows, falls] = slow.efforts.map(|effort| {
+                let effort =
+                    effort.map(|effort| format!("{}{}", shown(effort), slow.unit.suffix()));
+                effort.unwrap_or_else(|| "jams".to_owned())
+            });
+            let locks = if slow.is_self_locking() {
+                ": self-locking"
+            } else {
+                ""
+            };
+            let _ = writeln!(
+                out,
+                "  {}.effort in slow motion: {grows} as it grows, {falls} as it falls{locks}",
+                slow.driver
+            );
         }
         if !self.indeterminate.is_empty() {
             let treatment = match mechanism.outputs.indeterminate {

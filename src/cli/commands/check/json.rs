@@ -168,6 +168,14 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
             values.map(|(name, value, unit)| json!({ "name": name, "value": value, "unit": unit }));
         found["forces"] = values.collect();
         found["indeterminate"] = json!(forces.indeterminate);
+        let slow = forces.slow.iter().map(|slow| {
+            json!({
+                "driver": slow.driver,
+                "efforts": slow.efforts,
+                "self_locking": slow.is_self_locking(),
+            })
+        });
+        found["slow_motion"] = slow.collect();
     }
     if modes {
         let modes = solver.modes()?;

@@ -1,0 +1,325 @@
+//! Friction in joints: it grows with the reaction of the joint, and this depends on it.
+//!
+//! The reactions are affine in the friction f of the joints that slide, R = A + B f, so that
+//!
+//! > f_k = −s_k μ_k p_k(R_k) − d_k ċ_k, R_k = A_k + Σ B_kj f_j
+//!
+//! with s for the direction in which a joint slides, μ for its coefficient and the norm p for its
+//! [pressure](crate::mechanism::Bearing::pressure). There is one solution where the matrix μ_k p_k(B_kj)
+//! has eigenvalues below one: f is the fixed point of a contraction then.
+
+use crate::kinematics::error::Error;
+use crate::kinematics::linear::{DenseLu, Factors};
+use crate::kinematics::state::SINGULAR_HERE;
+use crate::mechanism::{Dual, FrictionLaw, Load, Mechanism, Number, ParameterId, PassiveCause};
+
+/// Newton steps, far more than the nearly linear equations take.
+const MOST_STEPS: usize = 50;
+
+/// The friction in the joints of a mechanism.
+#[derive(Debug, Default)]
+pub struct JointFriction {
+    list: Vec<Bearing>,
+    /// f.
+    forces: Vec<f64>,
+    /// R.
+    reactions: Vec<[f64; 3]>,
+    /// A.
+    unloaded: Vec<[f64; 3]>,
+    /// B, row by row.
+    columns: Vec<[f64; 3]>,
+    /// I − ∂f/∂R B of the friction that slides.
+    factors: Option<DenseLu>,
+    side: Vec<f64>,
+    parameters: Vec<f64>,
+    /// Whether redundant constraints may leave reactions open.
+    is_open: bool,
+    is_frozen: bool,
+}
+
+/// Friction in one joint.
+#[derive(Debug)]
+struct Bearing {
+    name: String,
+    law: Box<FrictionLaw>,
+    /// Rate of the joint's coordinate, and the direction in which it slides: zero where it rests.
+    rate: f64,
+    sign: f64,
+}
+
+impl Bearing {
+    /// Returns the force for a reaction.
+    fn along<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        reaction: [N; 3],
+        rate: N,
+    ) -> N {
+        let bearing = self.law.bearing.as_ref().expect("it is in a joint");
+        let pressure = bearing.pressure(parameter, reaction);
+        self.law.along(parameter, pressure, rate, self.sign)
+    }
+
+    /// Returns the pressure for a reaction.
+    fn pressure(&self, parameter: &impl Fn(ParameterId) -> f64, reaction: [f64; 3]) -> f64 {
+        let bearing = self.law.bearing.as_ref().expect("it is in a joint");
+        bearing.pressure(parameter, reaction)
+    }
+
+    /// Returns the derivative of the force as the reaction changes.
+    fn derivative(
+        &self,
+        value: &impl Fn(ParameterId) -> f64,
+        reaction: [f64; 3],
+        by: [f64; 3],
+    ) -> f64 {
+        let parameter = |id: ParameterId| Dual::constant(value(id));
+        let reaction = [0, 1, 2].map(|k| Dual::new(reaction[k], [by[k]]));
+        let change = self
+            .along(&parameter, reaction, Dual::constant(self.rate))
+            .first();
+        // A joint without a load begins to bear one: any slope of the norm leads on.
+        if change.is_nan() { 0.0 } else { change }
+    }
+
+    /// Returns the error for a reason.
+    fn fault(&self, reason: &'static str) -> Error {
+        Error::NoForce {
+            force: self.name.clone(),
+            reason,
+        }
+    }
+}
+
+impl JointFriction {
+    /// Makes the storage; redundant constraints leave the reactions `open`.
+    pub(in crate::kinematics) fn new(mechanism: &Mechanism, open: bool) -> Self {
+        let list = mechanism.forces.iter().filter_map(|force| {
+            let Load::Passive {
+                cause: PassiveCause::Friction(law),
+                ..
+            } = &force.load
+            else {
+                return None;
+            };
+            law.bearing.as_ref()?;
+            Some(Bearing {
+                name: force.name.clone(),
+                law: law.clone(),
+                rate: 0.0,
+                sign: 0.0,
+            })
+        });
+        let list: Vec<_> = list.collect();
+        let count = list.len();
+        Self {
+            forces: vec![0.0; count],
+            reactions: vec![[0.0; 3]; count],
+            unloaded: vec![[0.0; 3]; count],
+            columns: vec![[0.0; 3]; count * count],
+            factors: (count > 0).then(|| DenseLu::new(count, 0)),
+            side: vec![0.0; count],
+            parameters: mechanism.default_parameters(),
+            is_open: open,
+            is_frozen: false,
+            list,
+        }
+    }
+
+    /// Returns whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Has friction follow from the reactions of the last solution, which stay, or again from its own.
+    pub fn freeze(&mut self, freeze: bool) {
+        self.is_frozen = freeze;
+    }
+
+    /// Sets the parameters, before the motion of the joints.
+    pub fn set_parameters(&mut self, parameters: &[f64]) {
+        self.parameters.copy_from_slice(parameters);
+    }
+
+    /// Sets the motion of the joint at a place: the rate of its coordinate, and the direction in which it
+    /// slides, 1 or −1, or zero where it rests.
+    pub fn set_motion(&mut self, place: usize, rate: f64, sign: f64) {
+        let own = &mut self.list[place];
+        (own.rate, own.sign) = (rate, sign);
+    }
+
+    /// Returns the friction of the joint at a place \[N or N m\], zero where it rests.
+    #[must_use]
+    pub fn force(&self, place: usize) -> f64 {
+        self.forces[place]
+    }
+
+    /// Returns the largest friction of the joint at a place while it sticks, for the reactions of the
+    /// last solution \[N or N m\].
+    #[must_use]
+    pub fn limit(&self, place: usize) -> f64 {
+        let own = &self.list[place];
+        let value = |id: ParameterId| self.parameters[id.index()];
+        own.law.sticking(&value) * own.pressure(&value, self.reactions[place])
+    }
+
+    /// Solves the friction of all joints that slide. `respond` solves the reactions of all joints for
+    /// friction of these sizes, its last call for the solution. Allocates nothing unless it fails.
+    ///
+    /// # Errors
+    ///
+    /// Those of `respond`, and [`Error::NoForce`] where there is no single solution.
+    pub fn solve<E: From<Error>>(
+        &mut self,
+        mut respond: impl FnMut(&[f64], &mut [[f64; 3]]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if let (true, Some(own)) = (self.is_open, self.list.first()) {
+            let fault = own.fault(
+                "follows from reactions that redundant constraints leave indeterminate: \
+                 `indeterminate = \"minimum_norm\"` in `[outputs]` chooses some",
+            );
+            return Err(fault.into());
+        }
+        let count = self.list.len();
+        if self.is_frozen {
+            let value = |id: ParameterId| self.parameters[id.index()];
+            let frozen = self.list.iter().zip(&self.reactions);
+            for (force, (own, reaction)) in self.forces.iter_mut().zip(frozen) {
+                *force = own.along(&value, *reaction, own.rate);
+            }
+            return respond(&self.forces, &mut self.unloaded);
+        }
+        self.forces.fill(0.0);
+        respond(&self.forces, &mut self.unloaded)?;
+        self.reactions.copy_from_slice(&self.unloaded);
+        if self.list.iter().all(|own| own.sign == 0.0) {
+            return Ok(());
+        }
+        self.columns.fill([0.0; 3]);
+        for column in 0..count {
+            let own = &self.list[column];
+            if own.sign == 0.0 {
+                continue;
+            }
+            // As large as friction is, so that rounding stays that of the reactions.
+            let value = |id: ParameterId| self.parameters[id.index()];
+            let size = own.along(&value, self.unloaded[column], own.rate).abs();
+            let size = if size > 0.0 { size } else { 1.0 };
+            self.forces[column] = size;
+            respond(&self.forces, &mut self.reactions)?;
+            self.forces[column] = 0.0;
+            for (row, (with, without)) in self.reactions.iter().zip(&self.unloaded).enumerate() {
+                self.columns[row * count + column] =
+                    [0, 1, 2].map(|k| (with[k] - without[k]) / size);
+            }
+        }
+        if !self.is_contraction() || !self.find() {
+            let mut sliding = self.list.iter().filter(|own| own.sign != 0.0);
+            let fault = sliding.next().map_or(SINGULAR_HERE, |own| {
+                own.fault("jams here: the reaction that it makes has it grow without end")
+            });
+            return Err(fault.into());
+        }
+        let Self {
+            forces, reactions, ..
+        } = self;
+        respond(forces, reactions)
+    }
+
+    /// Returns whether the matrix C_kj = μ_k p_k(B_kj), which has no negative entry, has eigenvalues below
+    /// one: (I − C) y = 1 has a positive solution then, and only then. Uses the factors.
+    fn is_contraction(&mut self) -> bool {
+        let value = |id: ParameterId| self.parameters[id.index()];
+        let count = self.list.len();
+        let factors = self.factors.as_mut().expect("there is friction");
+        factors.clear();
+        for (row, own) in self.list.iter().enumerate() {
+            factors.add(row, row, 1.0);
+            for column in 0..count {
+                let pressure = own.pressure(&value, self.columns[row * count + column]);
+                let coefficient = own.law.dry(&value, own.rate) * own.sign.abs();
+                factors.add(row, column, -coefficient * pressure);
+            }
+        }
+        self.side.fill(1.0);
+        if factors.factorise(0.0).is_err() {
+            return false;
+        }
+        factors.solve(&mut self.side);
+        self.side.iter().all(|y| *y > 0.0)
+    }
+
+    /// Finds f by Newton–Raphson, with its factors at the solution. Returns whether it has come to an
+    /// end.
+    fn find(&mut self) -> bool {
+        /// Part of the largest friction at which a change is rounding.
+        const ROUNDING: f64 = 16.0 * f64::EPSILON;
+        let value = |id: ParameterId| self.parameters[id.index()];
+        let count = self.list.len();
+        for _ in 0..MOST_STEPS {
+            for (row, reaction) in self.reactions.iter_mut().enumerate() {
+                *reaction = self.unloaded[row];
+                let columns = &self.columns[row * count..][..count];
+                for (column, force) in columns.iter().zip(&self.forces) {
+                    for (reaction, column) in reaction.iter_mut().zip(column) {
+                        *reaction += column * force;
+                    }
+                }
+            }
+            let factors = self.factors.as_mut().expect("there is friction");
+            factors.clear();
+            for (row, own) in self.list.iter().enumerate() {
+                let reaction = self.reactions[row];
+                self.side[row] = own.along(&value, reaction, own.rate) - self.forces[row];
+                factors.add(row, row, 1.0);
+                for column in 0..count {
+                    let by = self.columns[row * count + column];
+                    factors.add(row, column, -own.derivative(&value, reaction, by));
+                }
+            }
+            if factors.factorise(0.0).is_err() {
+                return false;
+            }
+            factors.solve(&mut self.side);
+            let mut largest = 0.0_f64;
+            let mut change = 0.0_f64;
+            for (force, by) in self.forces.iter_mut().zip(&self.side) {
+                *force += by;
+                largest = largest.max(force.abs());
+                change = change.max(by.abs());
+            }
+            if !largest.is_finite() {
+                return false;
+            }
+            if change <= ROUNDING * largest {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Returns the changes of the friction of all joints along a direction, from the changes of the
+    /// parameters, of the rates of the joints, and of the reactions where friction stays as it is. Belongs
+    /// to the last solution.
+    pub fn changes(
+        &mut self,
+        parameter: &impl Fn(ParameterId) -> Dual,
+        rates: &[Dual],
+        reactions: &[[f64; 3]],
+    ) -> &[f64] {
+        self.side.fill(0.0);
+        if self.list.iter().all(|own| own.sign == 0.0) {
+            return &self.side;
+        }
+        let sliding = self.list.iter().enumerate();
+        for (row, own) in sliding.filter(|(_, own)| own.sign != 0.0) {
+            let [is, by] = [self.reactions[row], reactions[row]];
+            let reaction = [0, 1, 2].map(|k| Dual::new(is[k], [by[k]]));
+            self.side[row] = own.along(parameter, reaction, rates[row]).first();
+        }
+        let factors = self.factors.as_mut().expect("there is friction");
+        factors.solve(&mut self.side);
+        &self.side
+    }
+}
