@@ -4,6 +4,9 @@
 //! touches exerts nothing, friction that slides exerts what its law says, and a stop that is touched and
 //! friction that sticks hold their coordinate, c̈ = 0, by the force that this takes.
 
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
 use super::triangular::{ascend, descend, factorise};
@@ -144,7 +147,7 @@ pub(super) struct PassiveForces {
 pub(super) struct PassiveForce {
     /// Index of the force in the mechanism.
     pub(super) index: usize,
-    relation: Box<dyn Constraint>,
+    relation: Arc<dyn Constraint>,
     is_angle: bool,
     pub(super) cause: Cause,
 }
@@ -154,9 +157,26 @@ pub(super) struct PassiveForce {
 pub(super) enum Cause {
     /// A rigid stop, by its index.
     Stop(usize),
+    /// The two parts of a joint with play, by its index.
+    Play(usize),
     /// An elastic stop: its force has a law, which changes where it is touched.
     Elastic(ElasticStop),
     Friction(Box<FrictionLaw>),
+}
+
+impl Cause {
+    fn of(cause: &PassiveCause) -> Self {
+        match cause {
+            PassiveCause::Stop(stop) => Self::Stop(*stop),
+            PassiveCause::Play(joint) => Self::Play(*joint),
+            PassiveCause::Friction(law) => Self::Friction(law.clone()),
+        }
+    }
+
+    /// Returns whether it is a contact that holds its coordinate at a limit.
+    pub(super) fn is_contact(&self) -> bool {
+        matches!(self, Self::Stop(_) | Self::Play(_))
+    }
 }
 
 impl PassiveForces {
@@ -165,19 +185,20 @@ impl PassiveForces {
         let forces = mechanism.forces.iter().enumerate();
         let all = forces.filter_map(|(index, force)| {
             let (coordinate, cause) = match &force.load {
-                Load::Passive { coordinate, cause } => match cause {
-                    PassiveCause::Stop(stop) => (coordinate, Cause::Stop(*stop)),
-                    PassiveCause::Friction(law) => (coordinate, Cause::Friction(law.clone())),
-                },
+                Load::Passive { coordinate, cause } => (coordinate, Cause::of(cause)),
                 Load::Coordinate { coordinate, law } => {
                     let stop = law.as_ref().and_then(|law| law.stop.clone());
                     (coordinate, Cause::Elastic(*stop?))
                 }
                 Load::Marker { .. } => return None,
             };
+            let relation = match &force.load {
+                Load::Passive { cause, .. } => solver.relation_of(coordinate, cause),
+                _ => of_coordinate(coordinate).into(),
+            };
             Some(PassiveForce {
                 index,
-                relation: of_coordinate(coordinate),
+                relation,
                 is_angle: coordinate.kind.is_angle(),
                 cause,
             })
@@ -247,7 +268,7 @@ impl PassiveForces {
     /// Returns whether a coordinate is held.
     pub(super) fn is_held(&self, force: usize) -> bool {
         match self.modes[force] {
-            Mode::AtMin | Mode::AtMax => matches!(self.list[force].cause, Cause::Stop(_)),
+            Mode::AtMin | Mode::AtMax => self.list[force].cause.is_contact(),
             mode => mode == Mode::Sticking,
         }
     }
@@ -273,12 +294,22 @@ impl PassiveForces {
                 let unit = motion.unit(DriverId(driver));
                 self.rows[(k, driver)] = solver.coordinate(relation, unit).first();
             }
+            if let Cause::Play(joint) = passive.cause {
+                to.bounds = solver.limits_of_play(joint);
+                if passive.is_angle {
+                    // The bodies' whole turns are no play.
+                    let middle = 0.5 * (to.bounds[0] + to.bounds[1]);
+                    let turns = ((to.coordinate.value - middle) / TAU).round();
+                    to.coordinate.value -= TAU * turns;
+                }
+            }
             let scale = if passive.is_angle { 1.0 } else { solver.size() };
             to.rounding = ROUNDINGS * scale.max(to.coordinate.value.abs());
             to.force = 0.0;
             let rate = to.coordinate.first();
             match &passive.cause {
                 Cause::Stop(stop) => to.bounds = solver.mechanism().stops[*stop].limits(parameters),
+                Cause::Play(_) => {}
                 Cause::Friction(law) => {
                     let limit = law.sticking(&value);
                     to.bounds = [-limit, limit];

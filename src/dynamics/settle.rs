@@ -10,7 +10,7 @@ use super::passive::{Cause, Mode};
 use super::triangular::ascend;
 use super::watch::FORCE_ROUNDING;
 use crate::kinematics::{self, Solver, StopLimit};
-use crate::mechanism::{Force, Load, Mechanism, Order, fixed, shown};
+use crate::mechanism::{Force, JointKind, Load, Mechanism, Order, PassiveCause, fixed, shown};
 
 /// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
 const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
@@ -23,8 +23,9 @@ const MOST_CHOICES: usize = 50;
 /// A speed of so many roundings may be rest: 1e-8 radians or sizes of the mechanism per second. The
 /// instant of an event is not known much better.
 const SLOW: f64 = 1e6;
-/// Corrections of held coordinates: two suffice, since they are nearly linear over a step.
-const MOST_CORRECTIONS: usize = 5;
+/// Corrections of held coordinates: two suffice where they are nearly linear, as over a step; a start may
+/// be farther away.
+const MOST_CORRECTIONS: usize = 20;
 
 /// An event of a free motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,15 +64,35 @@ impl Event {
         let (Load::Passive { coordinate, .. } | Load::Coordinate { coordinate, .. }) = load else {
             unreachable!("events are those of passive forces");
         };
-        let happens = match self.kind {
-            EventKind::Impact { speed } => {
-                let unit = coordinate.kind.units()[1].suffix();
-                format!("impact at stop `{name}` with {}{unit}", shown(speed))
+        let joint = match load {
+            Load::Passive {
+                cause: PassiveCause::Play(joint),
+                ..
+            } => Some(&mechanism.joints[*joint].kind),
+            _ => None,
+        };
+        let speed = |speed| {
+            let unit = coordinate.kind.units()[1].suffix();
+            format!("{}{unit}", shown(speed))
+        };
+        let happens = match (self.kind, joint) {
+            (EventKind::Impact { speed: before }, None) => {
+                format!("impact at stop `{name}` with {}", speed(before))
             }
-            EventKind::Rests => format!("rest at stop `{name}`"),
-            EventKind::Leaves => format!("stop `{name}` is left"),
-            EventKind::Sticks => format!("friction `{name}` sticks"),
-            EventKind::Slides => format!("friction `{name}` slides"),
+            (EventKind::Rests, None) => format!("rest at stop `{name}`"),
+            (EventKind::Leaves, None) => format!("stop `{name}` is left"),
+            (EventKind::Impact { speed: before }, Some(JointKind::Rope(_))) => {
+                format!("rope `{name}` pulls taut with {}", speed(before))
+            }
+            (EventKind::Rests, Some(JointKind::Rope(_))) => format!("rope `{name}` is taut"),
+            (EventKind::Leaves, Some(JointKind::Rope(_))) => format!("rope `{name}` goes slack"),
+            (EventKind::Impact { speed: before }, Some(_)) => {
+                format!("the parts of joint `{name}` meet with {}", speed(before))
+            }
+            (EventKind::Rests, Some(_)) => format!("the parts of joint `{name}` touch"),
+            (EventKind::Leaves, Some(_)) => format!("the parts of joint `{name}` part"),
+            (EventKind::Sticks, _) => format!("friction `{name}` sticks"),
+            (EventKind::Slides, _) => format!("friction `{name}` slides"),
         };
         format!("t = {} s: {happens}", fixed(self.time, 9))
     }
@@ -248,11 +269,11 @@ impl Equations {
         let sides = passive.flat_map(|(force, at)| {
             let value = at.coordinate.value;
             let [least, most] = at.bounds;
-            let is_stop = matches!(self.passive.list[force].cause, Cause::Stop(_));
+            let is_contact = self.passive.list[force].cause.is_contact();
             let sides = [(Mode::AtMin, value - least), (Mode::AtMax, most - value)];
             let near = sides
                 .into_iter()
-                .filter(move |(_, gap)| is_stop && *gap <= 4.0 * at.rounding);
+                .filter(move |(_, gap)| is_contact && *gap <= 4.0 * at.rounding);
             near.map(move |(mode, _)| Contact { force, mode })
         });
         sides.collect()
@@ -300,11 +321,9 @@ impl Equations {
                 .map(|&contact| Hit {
                     contact,
                     speed: -self.opening(contact)[0],
-                    restitution: match self.passive.list[contact.force].cause {
-                        Cause::Stop(stop) if closes(&contact) && !is_tired[contact.force] => {
-                            solver.mechanism().stops[stop].restitution(&solver.pose().parameters)
-                        }
-                        _ => 0.0,
+                    restitution: match closes(&contact) && !is_tired[contact.force] {
+                        true => self.restitution(solver, contact.force),
+                        false => 0.0,
                     },
                 })
                 .collect();
@@ -354,6 +373,17 @@ impl Equations {
         Err(Error::Integrator(format!("t = {time} s: {why}")))
     }
 
+    /// Returns the part of the velocity with which a contact bounces.
+    fn restitution(&self, solver: &Solver, force: usize) -> f64 {
+        let force = &solver.mechanism().forces[self.passive.list[force].index];
+        match &force.load {
+            Load::Passive { cause, .. } => {
+                cause.restitution(solver.mechanism(), &solver.pose().parameters)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Changes the velocities in `x` by the impulses of contacts (Newton's law of restitution), and
     /// returns the impulses.
     fn strike(&self, solver: &Solver, hits: &[Hit], x: &mut [f64]) -> Result<Vec<f64>, Error> {
@@ -372,15 +402,20 @@ impl Equations {
 
     /// Returns the error at a stop of a coordinate that no freedom moves.
     fn stop(&self, solver: &Solver, Contact { force, mode }: Contact) -> Error {
+        let time = solver.pose().time;
         let Cause::Stop(stop) = self.passive.list[force].cause else {
-            unreachable!("contacts are those of stops");
+            let Force { name, .. } = &solver.mechanism().forces[self.passive.list[force].index];
+            return Error::Blocked(format!(
+                "at t = {} s the parts of joint `{name}` meet, and no freedom moves them",
+                fixed(time, 9)
+            ));
         };
         let stop = &solver.mechanism().stops[stop];
         let is_max = mode == Mode::AtMax;
         let value = self.point.passive[force].bounds[usize::from(is_max)];
         Error::Stop {
             limit: Box::new(StopLimit::new(stop, is_max, value)),
-            time: solver.pose().time,
+            time,
         }
     }
 

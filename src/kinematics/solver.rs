@@ -26,7 +26,8 @@ use super::state::{Pose, SolverChoices, State};
 use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{
-    BodyId, DriverId, Indeterminate, Jet, MarkerId, Mechanism, Motion, Order, ParameterId,
+    BodyId, Coordinate, DriverId, Indeterminate, Jet, MarkerId, Mechanism, Motion, Order,
+    ParameterId, PassiveCause,
 };
 
 /// Solves position, velocity and acceleration of one mechanism.
@@ -352,6 +353,28 @@ impl Solver {
     #[must_use]
     pub fn coordinate(&self, relation: &dyn Constraint, rates: &Rates) -> Jet {
         self.state.measure(relation, rates)
+    }
+
+    /// Returns the relation along which a passive force acts.
+    #[must_use]
+    pub fn relation_of(
+        &self,
+        coordinate: &Coordinate,
+        cause: &PassiveCause,
+    ) -> Arc<dyn Constraint> {
+        self.compiled.system.relation_of(coordinate, cause)
+    }
+
+    /// Returns least and largest value of the relation of a joint with play at the present pose \[m or
+    /// rad\], infinite where its parts only push.
+    #[must_use]
+    pub fn limits_of_play(&self, joint: usize) -> [f64; 2] {
+        let open = self.compiled.system.open_relation(joint);
+        let open = open.map(|open| {
+            let parameters = &self.state.pose.parameters;
+            open.limits(self.mechanism(), parameters, &self.state.at)
+        });
+        open.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.

@@ -1,6 +1,6 @@
 //! Equations between coordinates.
 
-use super::{Coordinate, Expression, Motion, Phase, Variable};
+use super::{Coordinate, Expression, Motion, Phase, Play, Variable};
 
 /// Most coordinates in one equation.
 pub const MOST_COUPLED: usize = 8;
@@ -19,6 +19,8 @@ pub struct CoordinateEquation {
     pub law: Option<Motion>,
     /// Value at which left − right is held.
     pub phase: Phase,
+    /// The gap in which left − right is free, in free motion.
+    pub play: Option<Box<Play>>,
     /// Whether both sides are angles; lengths otherwise.
     pub is_angle: bool,
 }

@@ -47,6 +47,9 @@ pub enum Load {
 pub enum PassiveCause {
     /// A rigid stop, by its index: it pushes where something touches it.
     Stop(usize),
+    /// A joint with play, by its index: its parts push each other where they meet. It acts along the
+    /// joint's relation; the coordinate has its unit.
+    Play(usize),
     /// Friction: it acts against the rate of the coordinate, and holds it at rest.
     Friction(Box<FrictionLaw>),
 }
@@ -57,7 +60,23 @@ impl PassiveCause {
     pub fn bearing(&self) -> Option<&Bearing> {
         match self {
             Self::Friction(law) => law.bearing.as_ref(),
-            Self::Stop(_) => None,
+            Self::Stop(_) | Self::Play(_) => None,
+        }
+    }
+
+    /// Returns the part of the velocity with which something bounces, zero for friction.
+    #[must_use]
+    pub fn restitution(&self, mechanism: &Mechanism, parameters: &[f64]) -> f64 {
+        let value = |restitution: Option<&Expression>| {
+            restitution.map_or(0.0, |restitution| restitution.value(parameters))
+        };
+        match self {
+            Self::Stop(stop) => mechanism.stops[*stop].restitution(parameters),
+            Self::Play(joint) => {
+                let play = mechanism.joints[*joint].kind.play();
+                value(play.and_then(|play| play.restitution.as_ref()))
+            }
+            Self::Friction(_) => 0.0,
         }
     }
 
@@ -65,9 +84,8 @@ impl PassiveCause {
     #[must_use]
     pub fn fault(&self, mechanism: &Mechanism, parameters: &[f64]) -> Option<&'static str> {
         match self {
-            Self::Stop(stop) => {
-                let restitution = mechanism.stops[*stop].restitution(parameters);
-                let is_possible = (0.0..=1.0).contains(&restitution);
+            Self::Stop(_) | Self::Play(_) => {
+                let is_possible = (0.0..=1.0).contains(&self.restitution(mechanism, parameters));
                 (!is_possible).then_some("has a `restitution` that is not from 0 to 1")
             }
             Self::Friction(law) => {
@@ -151,10 +169,20 @@ impl Mechanism {
         self.force_components(Load::is_input)
     }
 
-    /// Returns the components of the forces whose sizes the file gives.
+    /// Returns the components of the forces whose sizes are no inputs. Joints with play have their
+    /// reactions instead.
     #[must_use]
     pub fn given_forces(&self) -> Vec<ForceComponent> {
-        self.force_components(|load| !load.is_input())
+        self.force_components(|load| {
+            let is_reaction = matches!(
+                load,
+                Load::Passive {
+                    cause: PassiveCause::Play(_),
+                    ..
+                }
+            );
+            !load.is_input() && !is_reaction
+        })
     }
 
     fn force_components(&self, is_wanted: impl Fn(&Load) -> bool) -> Vec<ForceComponent> {
@@ -389,7 +417,7 @@ impl Load {
         match self {
             Self::Coordinate { law, .. } => law.iter().flat_map(ForceLaw::expressions).collect(),
             Self::Passive { cause, .. } => match cause {
-                PassiveCause::Stop(_) => Vec::new(),
+                PassiveCause::Stop(_) | PassiveCause::Play(_) => Vec::new(),
                 PassiveCause::Friction(law) => law.expressions().collect(),
             },
             Self::Marker { law, .. } => law.iter().flatten().collect(),

@@ -15,6 +15,7 @@
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
 //! | `force_quantity`, `reaction` | [`ForceQuantity`]: forces, energies and inertias, and their names |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
+//! | `play` | [`Play`]: joints that open |
 //! | `stop` | [`Stop`]: limits of a coordinate |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
 //! | `setting` | start values of the FMU's settings |
@@ -40,6 +41,7 @@ mod motion;
 mod names;
 mod number;
 mod parameter;
+mod play;
 mod profile;
 mod reaction;
 mod read;
@@ -80,6 +82,7 @@ pub(crate) use names::{did_you_mean, help};
 pub use names::{is_identifier, similar_identifier};
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::{DerivedParameter, Parameter};
+pub use play::Play;
 pub use profile::{
     ContourPoint, MovingProfile, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
 };
@@ -245,6 +248,8 @@ pub enum JointKind {
         carrier: Option<BodyId>,
         /// Value at which the relation of their angles is held.
         phase: Phase,
+        /// The gap between the flanks, in free motion.
+        play: Option<Box<Play>>,
     },
     /// Two wheels joined by a belt or chain. Marker angles set the phase.
     Belt {
@@ -265,6 +270,8 @@ pub enum JointKind {
         side: RackSide,
         /// Value at which the relation of way and angle is held.
         phase: Phase,
+        /// The gap between the flanks, in free motion.
+        play: Option<Box<Play>>,
     },
     /// A wheel, which has marker i, that rolls on the x-axis of marker j, the track, and stays on it.
     Rolling {
@@ -284,6 +291,8 @@ pub enum JointKind {
         follower: CamFollower,
         /// Contour of the cam.
         profile: Profile,
+        /// Whether, and how, the follower lifts off in free motion.
+        play: Option<Box<Play>>,
     },
     /// A rope from marker i to marker j over the points between them.
     Rope(Rope),

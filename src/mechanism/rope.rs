@@ -1,6 +1,6 @@
 //! Ropes over points and pulleys.
 
-use super::{Expression, JointKind, MarkerId, Mechanism, ParameterId};
+use super::{Expression, JointKind, MarkerId, Mechanism, ParameterId, Play};
 
 /// Most moving bodies that one rope runs over: a row of the Jacobian holds the entries of so many.
 pub(crate) const MOST_BODIES: usize = 8;
@@ -14,6 +14,8 @@ pub struct Rope {
     pub points: Vec<RopePoint>,
     /// Number of parts of each leg, from a point to the next one, positive.
     pub parts: Vec<Expression>,
+    /// Whether, and how, it goes slack in free motion.
+    pub play: Option<Box<Play>>,
 }
 
 /// Point over which a rope runs, or at which it ends.

@@ -49,10 +49,13 @@ def block(times):
     return places
 
 
+# In one a floor throws the ball back, and the rail has a given force; in the other a rope does, and the
+# guide's friction is a part of its reaction.
+@pytest.mark.parametrize("name", ["ball_and_block", "ball_on_rope"])
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("interface", ["CoSimulation", "ModelExchange"])
-def test_either_interface_meets_the_closed_form(fmu, fmu3, version, interface):
-    exported = {2: fmu, 3: fmu3}[version]("ball_and_block")
+def test_either_interface_meets_the_closed_form(fmu, fmu3, version, interface, name):
+    exported = {2: fmu, 3: fmu3}[version](name)
     result = simulate_fmu(
         exported.folder,
         model_description=exported.description,

@@ -137,7 +137,7 @@ symbols! { composer, ends:
     rack: Rack, JointKind::RackAndPinion { radius, side, .. } =>
         rack::compose(composer, ends, radius, *side);
     track: Track, JointKind::Rolling { radius, .. } => track::compose(composer, ends, radius);
-    cam: Cam, JointKind::Cam { follower, profile } =>
+    cam: Cam, JointKind::Cam { follower, profile, .. } =>
         cam::compose(composer, ends, follower, profile);
     tie: Tie, JointKind::Coupling(equation) => tie::compose(composer, equation);
     curve: CurveLine, JointKind::Curve(curve) => curve::compose(composer, ends, curve);

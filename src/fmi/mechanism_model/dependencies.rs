@@ -372,6 +372,9 @@ impl<'a> DependencyTable<'a> {
         for expression in mechanism.simulation.gravity.iter().chain(loads) {
             origins.add_expression(mechanism, expression);
         }
+        for parameter in structure.parameters_of_play() {
+            origins.add_parameter(mechanism, *parameter);
+        }
     }
 }
 

@@ -1,10 +1,14 @@
 //! Springs, dampers, actuators and loads.
 
+use std::sync::Arc;
+
 use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
 use crate::kinematics::error::Error;
+use crate::kinematics::system::System;
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId,
+    PassiveCause,
 };
 
 /// The forces of a mechanism, ready to be evaluated.
@@ -27,7 +31,7 @@ pub(super) struct AppliedForce {
 #[derive(Debug)]
 pub(super) enum Place {
     /// Along a coordinate.
-    Coordinate(Box<dyn Constraint>),
+    Coordinate(Arc<dyn Constraint>),
     /// At a marker, along the axes of another one or of ground.
     Marker(MarkerId, Option<MarkerId>),
 }
@@ -115,12 +119,15 @@ fn distance_rounding(coordinate: &Coordinate, at: &Configuration) -> f64 {
 }
 
 impl AppliedForces {
-    pub(super) fn new(mechanism: &Mechanism, inputs: &[Option<usize>]) -> Self {
-        let forces = mechanism.forces.iter().zip(inputs);
+    pub(super) fn new(system: &System, inputs: &[Option<usize>]) -> Self {
+        let forces = system.mechanism().forces.iter().zip(inputs);
         let list = forces.map(|(force, &input)| AppliedForce {
             place: match &force.load {
-                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
-                    Place::Coordinate(of_coordinate(coordinate))
+                Load::Coordinate { coordinate, .. } => {
+                    Place::Coordinate(of_coordinate(coordinate).into())
+                }
+                Load::Passive { coordinate, cause } => {
+                    Place::Coordinate(system.relation_of(coordinate, cause))
                 }
                 Load::Marker { marker, axes, .. } => Place::Marker(*marker, *axes),
             },
@@ -162,7 +169,15 @@ impl AppliedForces {
                 ) => {
                     let law = definition.load.law();
                     let value = relation.value(at);
+                    let is_play = matches!(
+                        &definition.load,
+                        Load::Passive {
+                            cause: PassiveCause::Play(_),
+                            ..
+                        }
+                    );
                     if coordinate.kind == CoordinateKind::Distance
+                        && !is_play
                         && value <= distance_rounding(coordinate, at)
                     {
                         return fault("has no direction: the distance of its markers is zero");

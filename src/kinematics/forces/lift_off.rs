@@ -3,9 +3,8 @@
 use std::fmt;
 
 use super::solve::Forces;
-use super::wrench::ContactKind;
 use crate::kinematics::state::State;
-use crate::mechanism::{show_time, shown};
+use crate::mechanism::{JointKind, show_time, shown};
 
 /// A part of the largest reaction below which a pulling force is rounding.
 const PULLS: f64 = 1e-9;
@@ -61,7 +60,10 @@ impl Forces {
                 time: state.pose.time,
                 joint: &self.mechanism.joints[contact.joint].name,
                 pull: -force,
-                is_rope: contact.kind == ContactKind::Rope,
+                is_rope: matches!(
+                    self.mechanism.joints[contact.joint].kind,
+                    JointKind::Rope(_)
+                ),
             })
         })
     }

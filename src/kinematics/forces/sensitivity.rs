@@ -279,18 +279,25 @@ impl Forces {
             .map_err(|Rejected| SINGULAR_HERE)?;
         let multipliers = self.varied_multipliers(system, state, at.bodies, &rows, &demand)?;
         let drivers = self.varied_drivers(system, state, sensitivity, &masses, &rows, &multipliers);
+        let open = self.rows.open.iter().map(|open| {
+            let open = open.as_ref()?;
+            Some((probe.entries(&*open.relation, state), open.force))
+        });
+        let open: Vec<_> = open.collect();
         let joints = 0..mechanism.joints.len();
         let reactions = joints.map(|joint| {
             let own = self.rows.joints[joint].iter();
             let own = own.map(|&row| (&*rows[row], multipliers[row]));
-            self.varied_reaction(at.bodies, joint, own)
+            let open = open[joint].iter();
+            let open = open.map(|(entries, force)| (&**entries, sizes[*force][0]));
+            self.varied_reaction(at.bodies, joint, own.chain(open))
                 .map(|value| value.first())
         });
         let held = self.rows.constraints.iter();
         let mut values: Vec<f64> = drivers.into_iter().flatten().collect();
         values.extend(reactions.flatten());
         values.extend(held.map(|&row| multipliers[row].first()));
-        values.extend(self.varied_shares(system, sensitivity, &multipliers));
+        values.extend(self.varied_shares(system, sensitivity, &multipliers, &sizes));
         values.extend(sizes.iter().flatten().map(Dual::first));
         values.extend([kinetic.first(), potential.first()]);
         let missing = self.missing_derivative(sensitivity.motion, &masses, &sizes);
@@ -519,13 +526,19 @@ impl Forces {
         system: &System,
         sensitivity: &Along<'_>,
         multipliers: &[Dual],
+        sizes: &[[Dual; 3]],
     ) -> Vec<f64> {
         let at = sensitivity.motion.mechanism();
-        let couplings = self.rows.couplings(system);
-        let shares = couplings.flat_map(|(joint, row, coupling)| {
+        let held = self.rows.couplings(system);
+        let held = held.map(|(joint, row, coupling)| (joint, multipliers[row], coupling));
+        let open = self.rows.open_couplings();
+        let open = open.map(|(joint, force, coupling)| (joint, sizes[force][0], coupling));
+        let mut all: Vec<_> = held.chain(open).collect();
+        all.sort_by_key(|(joint, ..)| *joint);
+        let shares = all.into_iter().flat_map(|(joint, effort, coupling)| {
             let places = 0..self.results.shares[joint].len();
             let at = &at;
-            places.map(move |place| multipliers[row] * coupling.varied_partial(at, place))
+            places.map(move |place| effort * coupling.varied_partial(at, place))
         });
         shares.map(|share| share.first()).collect()
     }

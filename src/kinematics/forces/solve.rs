@@ -98,7 +98,7 @@ impl Forces {
             masses: Masses::new(&mechanism, &|p: ParameterId| {
                 mechanism.parameters[p.index()].default
             }),
-            applied: AppliedForces::new(&mechanism, &places),
+            applied: AppliedForces::new(system, &places),
             loads,
             factors: JacobianFactors::new(system, &compiled.structure, &compiled.plan),
             set_aside: compiled.redundant.now.clone(),
@@ -466,6 +466,7 @@ impl Forces {
             multipliers,
             reactions,
             shares,
+            sizes,
             ..
         } = &mut self.results;
         for (joint, row, coupling) in self.rows.couplings(&compiled.system) {
@@ -474,11 +475,17 @@ impl Forces {
                 *share = multipliers[row] * partial;
             }
         }
+        for (joint, force, coupling) in self.rows.open_couplings() {
+            let partials = coupling.partials(&state.at);
+            for (share, partial) in shares[joint].iter_mut().zip(partials) {
+                *share = sizes[force][0] * partial;
+            }
+        }
         let mut held = self.rows.constraints.iter();
-        let finite = self
-            .rows
-            .write_reactions(&compiled.system, &state.at, multipliers, reactions)
-            && held.all(|&row| multipliers[row].is_finite());
+        let finite =
+            self.rows
+                .write_reactions(&compiled.system, &state.at, multipliers, sizes, reactions)
+                && held.all(|&row| multipliers[row].is_finite());
         if finite { Ok(()) } else { Err(SINGULAR_HERE) }
     }
 

@@ -1,12 +1,13 @@
 //! Force and torque that a joint exerts on the body of its second marker.
 
 use std::any::Any;
+use std::sync::Arc;
 
-use crate::kinematics::constraint::configuration::{Configuration, perp};
-use crate::kinematics::constraint::{Coupling, Gradient};
+use crate::kinematics::constraint::configuration::Configuration;
+use crate::kinematics::constraint::{Constraint, Coupling, Gradient};
 use crate::kinematics::origin::Origin;
-use crate::kinematics::system::System;
-use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number, Reported};
+use crate::kinematics::system::{System, contact_place, opens_towards};
+use crate::mechanism::{BodyId, Joint, JointKind, Load, Mechanism, Number, PassiveCause, Reported};
 
 /// The sum of the generalized forces that rows exert on a joint's second body, or on ground.
 #[derive(Clone, Copy, Debug)]
@@ -75,10 +76,20 @@ pub(super) struct ReactionRows {
     others: Vec<usize>,
     /// Those of them that are couplings.
     couplings: Vec<usize>,
+    /// The force along the relation of each joint with play, by the joint.
+    pub(super) open: Vec<Option<OpenForce>>,
     /// Row of each constraint.
     pub(super) constraints: Vec<usize>,
     /// Row of each driver.
     pub(super) drivers: Vec<usize>,
+}
+
+/// The force along the relation of a joint with play.
+#[derive(Debug)]
+pub(super) struct OpenForce {
+    /// Index of the force in the mechanism.
+    pub(super) force: usize,
+    pub(super) relation: Arc<dyn Constraint>,
 }
 
 impl ReactionRows {
@@ -89,6 +100,7 @@ impl ReactionRows {
             pins: Vec::new(),
             others: Vec::new(),
             couplings: Vec::new(),
+            open: mechanism.joints.iter().map(|_| None).collect(),
             constraints: vec![0; mechanism.constraints.len()],
             drivers: vec![0; mechanism.drivers.len()],
         };
@@ -108,6 +120,17 @@ impl ReactionRows {
                 rows.couplings.push(joint);
             }
         }
+        for (force, definition) in mechanism.forces.iter().enumerate() {
+            if let Load::Passive {
+                cause: PassiveCause::Play(joint),
+                ..
+            } = definition.load
+                && let Some(open) = system.open_relation(joint)
+            {
+                let relation = Arc::clone(&open.relation);
+                rows.open[joint] = Some(OpenForce { force, relation });
+            }
+        }
         rows
     }
 
@@ -123,19 +146,29 @@ impl ReactionRows {
         })
     }
 
+    /// Returns the couplings with play: the index of the joint, that of its force, and its relation.
+    pub(super) fn open_couplings(&self) -> impl Iterator<Item = (usize, usize, &Coupling)> {
+        self.couplings.iter().filter_map(|&joint| {
+            let open = self.open[joint].as_ref()?;
+            let relation: &dyn Any = &*open.relation;
+            Some((joint, open.force, relation.downcast_ref()?))
+        })
+    }
+
     /// Returns the number of reactions that [`report`](Self::report) writes.
     pub(super) fn reported_len(&self) -> usize {
         3 * self.joints.len() + self.constraints.len()
     }
 
-    /// Writes the force and the torque that each joint exerts on its second body for these λ.
-    /// Returns whether all are finite.
+    /// Writes the force and the torque that each joint exerts on its second body for these λ and these
+    /// sizes of forces, without which joints with play exert none. Returns whether all are finite.
     #[inline]
     pub(super) fn write_reactions(
         &self,
         system: &System,
         at: &Configuration,
         multipliers: &[f64],
+        sizes: &[[f64; 3]],
         reactions: &mut [[f64; 3]],
     ) -> bool {
         let mut sum = 0.0;
@@ -145,7 +178,7 @@ impl ReactionRows {
             sum += force[0] + force[1];
         }
         for &joint in &self.others {
-            let reaction = self.gather_reaction(system, at, joint, multipliers);
+            let reaction = self.gather_reaction(system, at, joint, multipliers, sizes);
             reactions[joint] = reaction;
             sum += reaction[0] + reaction[1] + reaction[2];
         }
@@ -160,27 +193,35 @@ impl ReactionRows {
         at: &Configuration,
         joint: usize,
         multipliers: &[f64],
+        sizes: &[[f64; 3]],
     ) -> [f64; 3] {
         let mechanism = system.mechanism();
         let Joint { kind, to, .. } = &mechanism.joints[joint];
         let rows = &self.joints[joint];
-        match (Reported::of(kind), &rows[..]) {
+        let open = self.open[joint].as_ref();
+        let open = open.and_then(|open| Some((&*open.relation, sizes.get(open.force)?[0])));
+        let along = match (&rows[..], open) {
+            (&[row], _) => multipliers[row],
+            (_, open) => open.map_or(0.0, |(_, size)| size),
+        };
+        match Reported::of(kind) {
             // The row has the entry one at the second wheel, or the equation.
-            (Reported::Torque | Reported::Effort, &[row]) => return [0.0, 0.0, multipliers[row]],
+            Reported::Torque | Reported::Effort => return [0.0, 0.0, along],
             // A force that lengthens a rope pushes.
-            (Reported::Tension, &[row]) => return [-multipliers[row], 0.0, 0.0],
+            Reported::Tension => return [-along, 0.0, 0.0],
             _ => {}
         }
         let to = at.marker(*to);
         let mut wrench = Wrench::new(to.body);
         let origin = |body: usize| at.frames()[body].origin.into();
         let mut gradient = Gradient::new();
-        for &row in rows {
+        let rows = rows.iter();
+        let rows = rows.map(|&row| (&*system.equations()[row].constraint, multipliers[row]));
+        for (constraint, size) in rows.chain(open) {
             gradient.clear();
-            let constraint = &system.equations()[row].constraint;
             constraint.gradient(at, &mut gradient);
             for (column, partial) in gradient.entries() {
-                let force = multipliers[row] * partial;
+                let force = size * partial;
                 wrench.add(column, force, mechanism.bodies.len(), origin);
             }
         }
@@ -198,7 +239,7 @@ impl ReactionRows {
     ) {
         let (of_joints, of_constraints) = to.split_at_mut(3 * self.joints.len());
         let (of_joints, _) = of_joints.as_chunks_mut();
-        self.write_reactions(system, at, multipliers, of_joints);
+        self.write_reactions(system, at, multipliers, &[], of_joints);
         for (joint, to) in system.mechanism().joints.iter().zip(of_joints) {
             let reported = Reported::of(&joint.kind);
             for (component, value) in to.iter_mut().enumerate() {
@@ -220,18 +261,6 @@ pub(super) struct Contact {
     pub(super) joint: usize,
     /// Row of the force between the two parts.
     row: usize,
-    pub(super) kind: ContactKind,
-}
-
-/// Kinds of [`Contact`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ContactKind {
-    /// A contact whose row holds the distance of its parts.
-    Distance,
-    /// A flat face on a cam.
-    Flat,
-    /// A rope.
-    Rope,
 }
 
 impl Contact {
@@ -239,22 +268,13 @@ impl Contact {
     pub(super) fn all(mechanism: &Mechanism, rows: &ReactionRows) -> Vec<Self> {
         let joints = mechanism.joints.iter().enumerate();
         let contact = |(joint, Joint { kind, .. }): (usize, &Joint)| {
-            // The order of the rows is that of `system::joint`.
-            let (place, kind) = match kind {
-                JointKind::Cam {
-                    follower: CamFollower::Knife,
-                    ..
-                } => (0, ContactKind::Distance),
-                JointKind::Cam {
-                    follower: CamFollower::Flat,
-                    ..
-                } => (1, ContactKind::Flat),
-                JointKind::Cam { .. } | JointKind::Rolling { .. } => (1, ContactKind::Distance),
-                JointKind::Rope(_) => (0, ContactKind::Rope),
-                _ => return None,
-            };
-            let row = *rows.joints[joint].get(place)?;
-            Some(Self { joint, row, kind })
+            let is_contact = matches!(
+                kind,
+                JointKind::Cam { .. } | JointKind::Rolling { .. } | JointKind::Rope(_)
+            );
+            let row = rows.joints[joint].get(contact_place(kind));
+            let row = *row.filter(|_| is_contact)?;
+            Some(Self { joint, row })
         };
         joints.filter_map(contact).collect()
     }
@@ -267,18 +287,6 @@ impl Contact {
         at: &Configuration,
         multipliers: &[f64],
     ) -> f64 {
-        let force = multipliers[self.row];
-        match self.kind {
-            // The distance of the two parts is held: a force that lengthens it pushes.
-            ContactKind::Distance => return force,
-            ContactKind::Rope => return -force,
-            ContactKind::Flat => {}
-        }
-        // The row moves the face against its normal. The cam's pole is on the inner side of each
-        // tangent of its contour.
-        let joint = &mechanism.joints[self.joint];
-        let (cam, face) = (at.marker(joint.from), at.marker(joint.to));
-        let side = perp(face.axis).dot(&(face.point - cam.point));
-        -force * side.signum()
+        multipliers[self.row] * opens_towards(&mechanism.joints[self.joint], at)
     }
 }

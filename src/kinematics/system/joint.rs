@@ -132,6 +132,7 @@ pub(super) fn relations(
             internal,
             carrier,
             phase,
+            ..
         } => vec![(
             couple(joint, sizes, !internal, *carrier, parts),
             held_at(phase),
@@ -149,6 +150,7 @@ pub(super) fn relations(
             radius,
             side,
             phase,
+            ..
         } => {
             vec![(roll(joint, radius, *side, parts), held_at(phase))]
         }
@@ -179,7 +181,9 @@ pub(super) fn relations(
             let coupling = coupling(mechanism, equation, &what, parts);
             vec![(Box::new(coupling), held_at(&equation.phase))]
         }
-        JointKind::Cam { follower, profile } => {
+        JointKind::Cam {
+            follower, profile, ..
+        } => {
             let profile = parts.profile(profile, mechanism, origin.describe(mechanism));
             let contour = Contour {
                 cam: from,
@@ -227,6 +231,20 @@ pub(super) fn relations(
         }
         JointKind::Rope(rope) => vec![(run(joint, rope, parts), rope.length.clone())],
         JointKind::Curve(curve) => lie(origin, joint, curve, parts),
+    }
+}
+
+/// Returns the place, among the relations of a joint, of that between its two parts: the one that play
+/// opens.
+#[must_use]
+pub(in crate::kinematics) fn contact_place(kind: &JointKind) -> usize {
+    match kind {
+        JointKind::Cam {
+            follower: CamFollower::Roller { .. } | CamFollower::Flat,
+            ..
+        }
+        | JointKind::Rolling { .. } => 1,
+        _ => 0,
     }
 }
 

@@ -6,6 +6,7 @@
 mod joint;
 mod linearise;
 mod parts;
+mod play;
 pub(super) mod structure;
 
 use std::any::Any;
@@ -13,7 +14,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use joint::JointParts;
+pub(super) use joint::contact_place;
 pub(super) use linearise::{RowValue, Values};
+pub(super) use play::{OpenRelation, opens_towards};
 
 use super::constraint::configuration::{Configuration, on_nearest_turn};
 use super::constraint::moving_configuration::VariedConfiguration;
@@ -23,8 +26,8 @@ use crate::kinematics::constraint::{
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    DriverId, Expression, Jet, JointKind, Mechanism, Motion, MotionInForce, MovingProfile, Number,
-    ParameterId, Phase,
+    Coordinate, DriverId, Expression, Jet, JointKind, Mechanism, Motion, MotionInForce,
+    MovingProfile, Number, ParameterId, PassiveCause, Phase,
 };
 
 /// The target of c(q).
@@ -62,6 +65,8 @@ pub struct System {
     ropes: Vec<(usize, usize)>,
     /// The joints that are curves, with their first rows.
     curves: Vec<(usize, usize)>,
+    /// The relations of joints with play, which are no rows.
+    open: Vec<OpenRelation>,
     joint_parts: JointParts,
     /// Size of the part that each body belongs to, as a part of the mechanism's size.
     part_sizes: Vec<f64>,
@@ -90,17 +95,23 @@ impl System {
         let mut equations = Vec::new();
         let mut joint_parts = JointParts::default();
         let (mut ropes, mut curves) = (Vec::new(), Vec::new());
+        let mut open = Vec::new();
         for (index, joint) in mechanism.joints.iter().enumerate() {
             let origin = Origin::Joint(index);
             joint_parts.parameters.clear();
+            let opens = mechanism.play(index).map(|_| contact_place(&joint.kind));
             match joint.kind {
-                JointKind::Rope(_) => ropes.push((index, equations.len())),
+                JointKind::Rope(_) if opens.is_none() => ropes.push((index, equations.len())),
                 JointKind::Curve(_) => curves.push((index, equations.len())),
                 _ => {}
             }
-            for (constraint, target) in
-                joint::relations(&mechanism, origin, joint, &mut joint_parts)
-            {
+            let relations = joint::relations(&mechanism, origin, joint, &mut joint_parts);
+            for (place, (constraint, target)) in relations.into_iter().enumerate() {
+                if opens == Some(place) {
+                    let parameters = joint_parts.parameters.clone();
+                    open.push(OpenRelation::new(index, constraint, target, parameters));
+                    continue;
+                }
                 equations.push(Equation {
                     origin,
                     constraint,
@@ -144,6 +155,7 @@ impl System {
             driver_rows,
             ropes,
             curves,
+            open,
             joint_parts,
             part_sizes,
         };
@@ -159,7 +171,11 @@ impl System {
         let rows =
             drawn.flat_map(|(joint, _)| self.rows_of(&[Origin::Joint(joint)]).first().copied());
         let rows: Vec<usize> = rows.collect();
-        if rows.is_empty() {
+        let is_drawn = |joint: usize| {
+            let phase = self.mechanism.joints[joint].kind.phase();
+            matches!(phase, Some(Phase::Drawn))
+        };
+        if rows.is_empty() && !self.open.iter().any(|open| is_drawn(open.joint)) {
             return;
         }
         let parameters = self.mechanism.default_parameters();
@@ -178,14 +194,49 @@ impl System {
             let value = self.equations[row].constraint.value(&at);
             self.equations[row].target = Target::Constant(Expression::constant(value));
         }
+        for open in self.open.iter_mut().filter(|open| is_drawn(open.joint)) {
+            open.target = Expression::constant(open.relation.value(&at));
+        }
     }
 
     /// Returns the joints that are ropes, with their relations.
     pub(in crate::kinematics) fn ropes(&self) -> impl Iterator<Item = (usize, &RopeLength)> {
-        self.ropes.iter().filter_map(|&(joint, row)| {
-            let constraint: &dyn Any = &*self.equations[row].constraint;
+        let held = self.ropes.iter();
+        let held = held.map(|&(joint, row)| (joint, &*self.equations[row].constraint));
+        let open = self.open.iter().map(|open| (open.joint, &*open.relation));
+        held.chain(open).filter_map(|(joint, constraint)| {
+            let constraint: &dyn Any = constraint;
             Some((joint, constraint.downcast_ref()?))
         })
+    }
+
+    /// Returns the parameters on which the relations of joints with play depend, besides those of
+    /// markers.
+    pub fn parameters_of_play(&self) -> impl Iterator<Item = ParameterId> {
+        let all = self.open.iter();
+        all.flat_map(|open| open.parameters(&self.mechanism))
+    }
+
+    /// Returns the relation along which a passive force acts: of a joint with play its own, or else that
+    /// of the coordinate.
+    pub(in crate::kinematics) fn relation_of(
+        &self,
+        coordinate: &Coordinate,
+        cause: &PassiveCause,
+    ) -> Arc<dyn Constraint> {
+        let open = match cause {
+            PassiveCause::Play(joint) => self.open_relation(*joint),
+            PassiveCause::Stop(_) | PassiveCause::Friction(_) => None,
+        };
+        match open {
+            Some(open) => Arc::clone(&open.relation),
+            None => constraint::of_coordinate(coordinate).into(),
+        }
+    }
+
+    /// Returns the relation of a joint with play.
+    pub(in crate::kinematics) fn open_relation(&self, joint: usize) -> Option<&OpenRelation> {
+        self.open.iter().find(|open| open.joint == joint)
     }
 
     /// Returns the joints that are curves, with the relation of their x.

@@ -25,6 +25,7 @@ pub struct Structure {
     blocks: Vec<Block>,
     /// Block of each unknown.
     block_of: Vec<usize>,
+    parameters_of_play: Vec<ParameterId>,
     /// Dependencies of each block's unknowns, through it and the blocks before it; computed on
     /// demand, as only an export needs them and in a chain they grow with every link.
     dependencies: OnceLock<Vec<Dependencies>>,
@@ -136,8 +137,15 @@ impl Structure {
             mechanism: Arc::clone(system.mechanism()),
             blocks: Vec::new(),
             block_of: vec![usize::MAX; system.unknowns()],
+            parameters_of_play: system.parameters_of_play().collect(),
             dependencies: OnceLock::new(),
         }
+    }
+
+    /// Returns the parameters on which the forces in joints with play depend, besides those of markers.
+    #[must_use]
+    pub fn parameters_of_play(&self) -> &[ParameterId] {
+        &self.parameters_of_play
     }
 
     /// Returns the blocks, each after those that it depends on.

@@ -143,6 +143,10 @@ impl<'a> Context<'a> {
         let all = (joints.len() == root.joints.items().len()).then_some(&*joints);
         let friction = |context: &mut Self, entry| context.friction(entry, all);
         forces.extend(self.each(&root.friction, friction));
+        if has_freedoms {
+            let plays = joints.iter().enumerate();
+            forces.extend(plays.filter_map(|(index, joint)| joint.force_of_play(index)));
+        }
         let mut mechanism = Mechanism {
             name: root.name.value.unwrap_or_default(),
             description: root.description.value.unwrap_or_default(),

@@ -69,12 +69,7 @@ impl<'a> Context<'a> {
             let quantity = field.value.as_ref();
             quantity.map(|quantity| quantity.expression.clone())
         };
-        if let Some(value) = restitution.number()
-            && !(0.0..=1.0).contains(&value)
-        {
-            let message = format!("`restitution` must be from 0 to 1, is {}", shown(value));
-            self.error(code::ILLEGAL_VALUE, restitution.span.clone(), message);
-        }
+        self.check_restitution(restitution);
         match (&stiffness.key, &restitution.key, &damping.key) {
             (None, _, Some(span)) => {
                 let message = format!("{} has `damping`, but no `stiffness`", owner.subject);

@@ -11,6 +11,7 @@
 //! | `invariance` | other freedoms, names, orders, places; time reversed |
 //! | `refused` | what has no inertia, what meets a dead point |
 //! | `events` | stops and friction against closed forms |
+//! | `play` | ropes, cams and wheels that open |
 //! | `joint_friction` | friction that grows with the reaction of its joint |
 //! | `chains` | random chains with stops and friction |
 //! | `state` | saved and restored |
@@ -23,6 +24,7 @@ mod joint_friction;
 mod lagrange;
 mod minimal;
 mod pendulum;
+mod play;
 mod published;
 mod refused;
 mod run;

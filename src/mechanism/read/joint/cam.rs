@@ -4,11 +4,11 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::context::Context;
 #[cfg(feature = "cli")]
 use crate::mechanism::read::kind::Described;
-use crate::mechanism::read::kind::{Item, Kind, Word, schema};
+use crate::mechanism::read::kind::{Flag, Item, Kind, Word, schema};
 use crate::mechanism::read::motion::LAW;
 #[cfg(feature = "cli")]
 use crate::mechanism::read::number::NUMBER;
-use crate::mechanism::read::number::{LENGTH, Quantity};
+use crate::mechanism::read::number::{LENGTH, Quantity, RATIO};
 use crate::mechanism::read::points::PointKeys;
 use crate::mechanism::read::table::table;
 use crate::mechanism::{
@@ -30,6 +30,10 @@ joint_type! {
         /// Polar radius of the contour [m]: an expression in theta, or points.
         #[required("\"0.04 + 0.01*(1 - cos(theta))\"")]
         profile: Profile = Contour,
+        /// Whether the follower lifts off in free motion, where the contact would have to pull.
+        unilateral: bool = Flag,
+        /// Part of the velocity with which it bounces, from 0 to 1; zero if left out.
+        restitution: Quantity = RATIO,
     }
 }
 
@@ -97,6 +101,7 @@ impl<'a> Context<'a> {
         Some(JointKind::Cam {
             follower,
             profile: keys.profile.value?,
+            play: self.unilateral(keys.unilateral, keys.restitution, &keys.owner)?,
         })
     }
 

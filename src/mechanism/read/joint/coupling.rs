@@ -9,7 +9,7 @@ use crate::mechanism::read::context::Context;
 use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Item, Kind, schema};
 use crate::mechanism::read::motion::MotionKeys;
-use crate::mechanism::read::number::NUMBER;
+use crate::mechanism::read::number::{NUMBER, Quantity, RATIO};
 use crate::mechanism::read::points::PointKeys;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
@@ -40,6 +40,10 @@ joint_type! {
         law: Law = LawOfOneArgument,
         /// Constant of left - right; zero if left out, "drawn" for what the estimates give.
         phase: Phase = PhaseOf(NUMBER),
+        /// Width of the gap in which left - right is free, in free motion.
+        backlash: Quantity = NUMBER.positive(),
+        /// Part of the velocity with which it bounces at the ends of the gap, from 0 to 1; zero if left out.
+        restitution: Quantity = RATIO,
     }
 }
 
@@ -91,6 +95,7 @@ impl<'a> Context<'a> {
     fn coupling(&mut self, keys: Coupling<'a>) -> Option<Made> {
         let law = keys.law.optional()?;
         let phase = phase(keys.phase)?;
+        let play = self.backlash(keys.backlash, keys.restitution, &keys.owner)?;
         let value = keys.equation.value?;
         let declared = self.coordinates.iter();
         let declared: Vec<(&str, Coordinate)> = declared
@@ -139,6 +144,7 @@ impl<'a> Context<'a> {
             law,
             is_angle,
             phase,
+            play,
         };
         Some((JointKind::Coupling(Box::new(equation)), ends))
     }

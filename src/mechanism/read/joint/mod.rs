@@ -7,6 +7,7 @@ mod curve;
 mod gear;
 mod link;
 mod phase;
+mod play;
 mod rack_and_pinion;
 mod revolute;
 mod revolute_translational;

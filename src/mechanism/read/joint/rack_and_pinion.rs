@@ -2,17 +2,18 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::kind::Word;
-use crate::mechanism::read::number::{LENGTH, Quantity};
+use crate::mechanism::read::number::{LENGTH, Quantity, RATIO};
 use crate::mechanism::{JointKind, Phase, RackSide};
 
 use super::joint_type;
 use super::phase::{PhaseOf, phase};
 
 joint_type! {
-    "rack_and_pinion" or "rack" or "pinion" => |keys, _| Some(JointKind::RackAndPinion {
+    "rack_and_pinion" or "rack" or "pinion" => |keys, context| Some(JointKind::RackAndPinion {
         radius: keys.radius.expression()?,
         side: keys.side.or(RackSide::Above)?,
         phase: phase(keys.phase)?,
+        play: context.backlash(keys.backlash, keys.restitution, &keys.owner)?,
     });
 
     /// A pinion, which has marker i, rolls along the x-axis of marker j, the rack.
@@ -25,6 +26,10 @@ joint_type! {
         /// Constant of the relation; zero if left out, which leaves the phase to the markers. "drawn"
         /// for what the estimates give.
         phase: Phase = PhaseOf(LENGTH),
+        /// Way of the rack between the flanks, in free motion.
+        backlash: Quantity = LENGTH.positive(),
+        /// Part of the velocity with which the flanks bounce, from 0 to 1; zero if left out.
+        restitution: Quantity = RATIO,
     }
 }
 

@@ -6,7 +6,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::context::Context;
 #[cfg(feature = "cli")]
 use crate::mechanism::read::kind::Described;
-use crate::mechanism::read::kind::{Item, Kind, Word, schema};
+use crate::mechanism::read::kind::{Flag, Item, Kind, Word, schema};
 use crate::mechanism::read::number::{LENGTH, Number, Quantity, RATIO};
 use crate::mechanism::read::reference::MarkerName;
 use crate::mechanism::read::table::{Field, table};
@@ -35,6 +35,10 @@ joint_type! {
         length: Quantity = LENGTH.positive(),
         /// Number of parts of the rope from each marker to the next; 1 each if left out.
         parts: Vec<Quantity> = Parts,
+        /// Whether the rope goes slack in free motion, where it would have to push.
+        unilateral: bool = Flag,
+        /// Part of the velocity with which it bounces as it pulls taut, from 0 to 1; zero if left out.
+        restitution: Quantity = RATIO,
     }
 }
 
@@ -169,6 +173,7 @@ impl<'a> Context<'a> {
             length: length?,
             points,
             parts,
+            play: self.unilateral(keys.unilateral, keys.restitution, &keys.owner)?,
         };
         Some((JointKind::Rope(rope), ends))
     }

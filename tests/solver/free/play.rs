@@ -1,0 +1,268 @@
+//! Joints that open in free motion: ropes, cams and wheels with backlash, against closed forms.
+
+use std::sync::Arc;
+
+use biela::dynamics::EventKind;
+use biela::kinematics::{Direction, ForceQuantity, Rates, Solution};
+use biela::mechanism::Mechanism;
+
+use super::events::{assert_near, played};
+use super::run::{Fed, Run};
+use crate::common::parse;
+
+const TOLERANCE: f64 = 1e-10;
+const G: f64 = 9.81;
+
+/// A ball of 2 kg at a rope of 1 m that is fixed at the origin.
+fn ball([x, y]: [f64; 2], [vx, vy]: [f64; 2], more: &str) -> Arc<Mechanism> {
+    parse(&format!(
+        r#"
+format = 1
+name = "ball"
+[ground.markers]
+A = [0, 0]
+[bodies.ball]
+mass = 2
+markers = {{ B = [0, 0] }}
+[joints]
+rope = {{ type = "rope", markers = ["ground.A", "ball.B"], length = 1, unilateral = true{more} }}
+[constraints]
+upright = {{ coordinate = "angle", markers = ["ground.A", "ball.B"], value = 0 }}
+[freedoms]
+x = {{ coordinate = "x", markers = ["ground.A", "ball.B"], start = {x}, velocity = {vx} }}
+y = {{ coordinate = "y", markers = ["ground.A", "ball.B"], start = {y}, velocity = {vy} }}
+"#
+    ))
+}
+
+/// Force of the first joint that the outputs name at the present time.
+fn reaction(run: &mut Run, joint: usize, component: usize) -> f64 {
+    let mut solution = Solution::new(&run.solver);
+    solution.seek_forces(&run.solver);
+    run.free.tell(&mut solution);
+    solution
+        .solve(&mut run.solver)
+        .expect("the pose is regular");
+    solution.force(ForceQuantity::Reaction(joint, component))
+}
+
+#[test]
+fn a_ball_falls_into_its_rope() {
+    // It falls from (0.3, 0) to where the rope is stretched; only the velocity across stays.
+    let drop = (1.0_f64 - 0.09).sqrt();
+    let (time, fall) = ((2.0 * drop / G).sqrt(), (2.0 * G * drop).sqrt());
+    let mut run = Run::new(&ball([0.3, 0.0], [0.0, 0.0], ""), TOLERANCE, Fed::default());
+    let events = played(&mut run, time + 1e-9, 3);
+    assert_near(events[0].time, time);
+    let EventKind::Impact { speed } = events[0].kind else {
+        panic!("{events:?}");
+    };
+    assert_near(speed, fall * drop);
+    let across = fall * 0.3;
+    let tension = 2.0 * (across * across + G * drop);
+    assert!(
+        (reaction(&mut run, 0, 0) - tension).abs() < 1e-6,
+        "{tension}"
+    );
+    let state = run.state();
+    assert!((state[2] - -across * drop).abs() < 1e-7, "{state:?}");
+    played(&mut run, 20.0, 1);
+    assert!(
+        run.free.energy_error().abs() < 1e-9,
+        "{}",
+        run.free.energy_error()
+    );
+    let [values, ..] = run.freedoms();
+    assert!(values[0].hypot(values[1]) < 1.0 + 1e-12, "{values:?}");
+}
+
+/// A bounce throws it back with a part of the speed along the rope.
+#[test]
+fn a_rope_throws_back() {
+    let mechanism = ball([0.0, -0.5], [0.0, 0.0], ", restitution = 0.6");
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    let [time, fall] = [(1.0 / G).sqrt(), G.sqrt()];
+    let flight = 2.0 * 0.6 * fall / G;
+    let events = played(&mut run, time + flight + 1e-6, 3);
+    assert_eq!(events.len(), 2, "{events:?}");
+    assert_near(events[0].time, time);
+    assert_near(events[1].time, time + flight);
+}
+
+/// From the lowest point with v² between 2 g L and 5 g L the rope goes slack at the angle β above the
+/// level with 3 g L sin β = v² − 2 g L.
+#[test]
+fn a_rope_goes_slack() {
+    let square = 3.5 * G;
+    let mechanism = ball([0.0, -1.0], [square.sqrt(), 0.0], "");
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    let events = played(&mut run, 1.0, 3);
+    assert_eq!(events[0].kind, EventKind::Leaves, "{events:?}");
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    run.to(events[0].time);
+    let height = (square - 2.0 * G) / (3.0 * G);
+    assert_near(run.state()[1], height);
+}
+
+/// The knife on r = 0.045 − 0.005 sin: it leaves where the contour falls away faster than it, and
+/// meets it again on its parabola.
+#[test]
+fn a_cam_throws_its_follower() {
+    let (speed, eccentricity) = (60.0, 0.005);
+    let text = format!(
+        r#"
+format = 1
+name = "cam"
+[ground.markers]
+O = [0, 0]
+G = [0, 0, "90*deg"]
+[bodies.cam]
+markers = {{ O = [0, 0] }}
+[bodies.follower]
+mass = 0.5
+markers = {{ R = [0, 0, "90*deg"], C = [0, 0] }}
+estimate = [0, 0.045, 0]
+[joints]
+pivot = {{ type = "revolute", markers = ["ground.O", "cam.O"] }}
+guide = {{ type = "translational", markers = ["ground.G", "follower.R"] }}
+contact = {{ type = "cam", markers = ["cam.O", "follower.C"], follower = "knife", profile = "0.045 - 0.005*cos(theta)", unilateral = true }}
+[drivers]
+turn = {{ coordinate = "angle", markers = ["ground.O", "cam.O"], motion = "{speed}*t" }}
+[freedoms]
+lift = {{ coordinate = "x", markers = ["ground.G", "follower.R"], start = 0.045, velocity = {velocity} }}
+"#,
+        velocity = -speed * eccentricity
+    );
+    let place = |t: f64| 0.045 - eccentricity * (speed * t).sin();
+    let rate = |t: f64| -eccentricity * speed * (speed * t).cos();
+    let leaves = (std::f64::consts::PI + (G / (eccentricity * speed * speed)).asin()) / speed;
+    let flight = |t: f64| {
+        let h = t - leaves;
+        place(leaves) + h * (rate(leaves) - 0.5 * G * h)
+    };
+    let (mut low, mut high) = (leaves + 0.02, leaves + 0.1);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        match flight(middle) > place(middle) {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    let speed = rate(low) - (rate(leaves) - G * (low - leaves));
+    let mut run = Run::new(&parse(&text), TOLERANCE, Fed::default());
+    let events = played(&mut run, low + 1e-6, 5);
+    assert_eq!(events[0].kind, EventKind::Leaves, "{events:?}");
+    assert_near(events[0].time, leaves);
+    assert_near(events[1].time, low);
+    let EventKind::Impact { speed: found } = events[1].kind else {
+        panic!("{events:?}");
+    };
+    assert_near(found, speed);
+    // It rides again, pushed by no more than it needs.
+    run.to(low + 0.01);
+    let t = low + 0.01;
+    assert_near(run.state()[0], place(t));
+    let lifting = G + eccentricity * 3600.0 * (60.0 * t).sin();
+    assert_near(reaction(&mut run, 2, 1), 0.5 * lifting);
+}
+
+/// A pinion of 20 teeth and a wheel of 60, with play.
+fn wheels(turned: f64, velocity: f64, more: &str, parts: &str) -> Arc<Mechanism> {
+    parse(&format!(
+        r#"
+format = 1
+name = "wheels"
+[parameters]
+torque = 0.4
+[ground.markers]
+O = [0, 0]
+P = [0.1, 0]
+[bodies.pinion]
+mass = 1
+inertia = 0.001
+markers = {{ O = [0, 0] }}
+[bodies.wheel]
+mass = 1
+inertia = 0.02
+markers = {{ P = [0, 0] }}
+estimate = [0.1, 0, 0]
+[joints]
+O = {{ type = "revolute", markers = ["ground.O", "pinion.O"] }}
+P = {{ type = "revolute", markers = ["ground.P", "wheel.P"] }}
+mesh = {{ type = "gear", markers = ["pinion.O", "wheel.P"], teeth = [20, 60], phase = "drawn", backlash = 0.03{more} }}
+[freedoms]
+a = {{ coordinate = "angle", markers = ["ground.O", "pinion.O"], start = 0, velocity = {velocity} }}
+b = {{ coordinate = "angle", markers = ["ground.P", "wheel.P"], start = {turned} }}
+[forces]
+motor = {{ coordinate = "angle", markers = ["ground.O", "pinion.O"], value = "torque" }}
+{parts}
+"#
+    ))
+}
+
+#[test]
+fn wheels_meet_on_both_flanks() {
+    let (velocity, restitution) = (6.0, 0.5);
+    let still = "brake = { coordinate = \"angle\", markers = [\"ground.O\", \"pinion.O\"], value = \"-torque\" }";
+    let mechanism = wheels(0.0, velocity, ", restitution = 0.5", still);
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    let closing = velocity / 3.0;
+    let first = 0.015 / closing;
+    let second = first + 0.03 / (restitution * closing);
+    let events = played(&mut run, second + 1e-6, 4);
+    assert_eq!(events.len(), 2, "{events:?}");
+    for (event, time, speed) in [
+        (events[0], first, closing),
+        (events[1], second, restitution * closing),
+    ] {
+        assert_near(event.time, time);
+        let EventKind::Impact { speed: found } = event.kind else {
+            panic!("{events:?}");
+        };
+        assert_near(found, speed);
+    }
+    // Momenta about the two pivots change by P and 3 P: a third of the pinion's joins the wheel's.
+    let [_, velocities, _] = run.freedoms();
+    let angular = 0.001 * velocities[0] - 0.02 * velocities[1] / 3.0;
+    assert_near(angular, 0.001 * velocity);
+}
+
+/// Where the flanks touch, the wheels accelerate together, as derivatives know too.
+#[test]
+fn touching_flanks_carry_the_torque() {
+    let mechanism = wheels(0.015, 0.0, "", "");
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    let inertia = 0.001 + 0.02 / 9.0;
+    assert_near(run.free.drivers()[0].second(), 0.4 / inertia);
+    let id = mechanism.parameter_id("torque").expect("it is there");
+    let mut direction = Direction::by_parameter(&mechanism, id);
+    let mut rates = Rates::new(run.solver.pose().q.len());
+    let drivers = run.free.drivers().to_vec();
+    (run.solver)
+        .solve_rates(|driver| drivers[driver.index()], &mut rates)
+        .expect("the pose is regular");
+    let mut loads = vec![0.0; run.solver.forces().loads()];
+    let completed = run
+        .free
+        .complete(&mut run.solver, &rates, &mut direction, &mut loads);
+    completed.expect("it has derivatives");
+    assert_near(direction.drivers[0].second(), 1.0 / inertia);
+    assert_near(direction.drivers[1].second(), -1.0 / (3.0 * inertia));
+    // The torque on the wheel.
+    assert_near(reaction(&mut run, 2, 2), -0.02 * 0.4 / inertia / 3.0);
+}
+
+/// A start at which the parts would overlap is moved until they touch.
+#[test]
+fn an_overlapping_start_is_closed() {
+    let run = Run::new(
+        &ball([0.3, -1.2], [0.0, 0.0], ""),
+        TOLERANCE,
+        Fed::default(),
+    );
+    let [values, ..] = run.freedoms();
+    assert!(
+        (values[0].hypot(values[1]) - 1.0).abs() < 1e-13,
+        "{values:?}"
+    );
+}
