@@ -389,6 +389,34 @@ impl FreeMotion {
         given: &impl Given,
         until: f64,
     ) -> Result<(), Error> {
+        self.go(solver, solution, given, until, false)
+    }
+
+    /// As [`advance`](Self::advance), to the first event on the way if there is one: the time of the
+    /// solver's pose tells. Contacts have bounced then, and friction has changed.
+    ///
+    /// # Errors
+    ///
+    /// As [`advance`](Self::advance).
+    pub fn advance_to_event(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        given: &impl Given,
+        until: f64,
+    ) -> Result<(), Error> {
+        self.go(solver, solution, given, until, true)
+    }
+
+    /// Moves the mechanism on to a time, or to the first event.
+    fn go(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        given: &impl Given,
+        until: f64,
+        ends_at_event: bool,
+    ) -> Result<(), Error> {
         // In front of the end of a curve a step ends at the time at which the end is expected.
         let mut end_of_curve = None;
         let start = self.integrator.state().t;
@@ -421,6 +449,9 @@ impl FreeMotion {
                     self.x.copy_from_slice(&self.integrator.state().x);
                     self.settle(solver, given)?;
                     self.go_on(solver, given)?;
+                    if ends_at_event {
+                        return Ok(());
+                    }
                     if self.events.len() - events > MOST_EVENTS {
                         return Err(Error::TooManyEvents {
                             time: solver.pose().time,

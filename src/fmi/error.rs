@@ -15,6 +15,9 @@ pub enum Failure {
     /// Not possible at all.
     #[error("{0}")]
     Failed(String),
+    /// Ended at an event, where the host handles [events](super::Model::end_steps_at_events).
+    #[error("the step ends at an event")]
+    Event,
 }
 
 /// A call was refused or failed.

@@ -286,6 +286,9 @@ pub trait Model: Sized {
     /// moved.
     fn step(&mut self, size: f64, end: f64, stays: bool, log: &Logger) -> Result<(), Failure>;
 
+    /// Has steps end at the first event on their way, with [`Failure::Event`], or go on beyond.
+    fn end_steps_at_events(&mut self, _end: bool) {}
+
     /// Begins a step of `size` \[s\] to the time `end` \[s\] that is taken in parts.
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {
         let _ = (size, end, log);

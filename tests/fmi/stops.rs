@@ -281,3 +281,65 @@ fn the_state_of_a_contact_is_saved() {
         instance.set_fmu_state(&saved).expect("its own");
     }
 }
+
+/// Where the host handles events, a step ends at the first one: with intermediate update and without.
+#[test]
+fn a_step_of_free_motion_returns_early_at_an_event() {
+    for intermediate_update in [false, true] {
+        let heard = Heard::default();
+        let model = MechanismModel::new(free(), Interface::CoSimulation).expect("it assembles");
+        let mut instance =
+            FmiInstance::of_version(Version::Fmi3, model, Box::new(heard.clone()), true);
+        instance
+            .agree(CoSimulation {
+                event_mode_used: true,
+                early_return_allowed: true,
+                intermediate_update,
+                ..CoSimulation::default()
+            })
+            .expect("legal");
+        instance
+            .enter_initialization_mode_at(0.0, None)
+            .expect("legal");
+        instance.exit_initialization_mode().expect("it starts");
+        instance.enter_step_mode().expect("legal");
+        let mut step = |instance: &mut Instance, start: f64, h: f64| {
+            let mut progress = instance.begin_step(start, h).expect("it moves");
+            loop {
+                match progress {
+                    StepProgress::Done(outcome) => return outcome,
+                    StepProgress::Intermediate { .. } => {
+                        progress = instance.resume_step(None).expect("it moves");
+                    }
+                }
+            }
+        };
+        let outcome = step(&mut instance, 0.0, 1.0);
+        // t − t²/4 = 0.12.
+        let meets = 2.0 * (1.0 - 0.88_f64.sqrt());
+        assert!(
+            outcome.early_return && outcome.event_handling_needed && !outcome.terminate_simulation,
+            "{outcome:?}"
+        );
+        assert!(
+            (outcome.last_successful_time - meets).abs() < 1e-9,
+            "{outcome:?}"
+        );
+        instance.enter_event_mode().expect("legal");
+        assert_eq!(get(&mut instance, ["feed.velocity"]), [0.0]);
+        instance.new_discrete_states().expect("it goes on");
+        instance.enter_step_mode().expect("legal");
+        let start = outcome.last_successful_time;
+        let outcome = step(&mut instance, start, 1.0);
+        assert!(
+            !outcome.early_return && !outcome.event_handling_needed,
+            "{outcome:?}"
+        );
+        let [place, velocity] = get(&mut instance, ["feed.position", "feed.velocity"]);
+        assert!(
+            (place - 0.12).abs() < 1e-13 && velocity == 0.0,
+            "{place} {velocity}"
+        );
+        assert!(heard.take(Category::Error).is_empty());
+    }
+}

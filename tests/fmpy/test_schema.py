@@ -21,6 +21,7 @@ WRONG = {
     "duplicate-output",
     "force-shape",
     "friction-coordinate",
+    "friction-coordinate_joint",
     "illegal-name",
     "illegal-name_device",
     "illegal-name_keyword",

@@ -225,6 +225,7 @@ impl<M: Model> Instance<M> {
                 Failure::Discarded(reason).into()
             }
             Failure::Discarded(reason) | Failure::Failed(reason) => Failure::Failed(reason).into(),
+            Failure::Event => failure.into(),
         }
     }
 

@@ -84,6 +84,8 @@ impl<M: Model> Instance<M> {
             intermediate[place(value_reference)] = true;
         }
         self.intermediate = intermediate.into();
+        let wants_events = co_simulation.event_mode_used && co_simulation.early_return_allowed;
+        self.model.end_steps_at_events(wants_events);
         self.co_simulation = co_simulation;
         Ok(())
     }
@@ -249,11 +251,23 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Ends a step that the model could not end. Where the host permits an early return, the step
+    /// Ends a step that the model did not end. At an event the host goes on from there. Where the host permits an early return, the step
     /// ends at the dead point; otherwise the instance is as before the step.
     #[cold]
     fn step_failed(&mut self, start: f64, h: f64, failure: Failure) -> Result<StepProgress, Error> {
         let reason = match failure {
+            Failure::Event => {
+                if self.pending_step.is_some()
+                    && let Err(failure) = self.model.end_step(&self.logger)
+                {
+                    return self.step_failed(start, h, failure);
+                }
+                self.pending_step = None;
+                return Ok(StepProgress::Done(StepOutcome {
+                    event_handling_needed: true,
+                    ..self.step_ended(true)
+                }));
+            }
             Failure::Discarded(reason) if self.co_simulation.early_return_allowed => reason,
             failure => {
                 self.abandon_step();

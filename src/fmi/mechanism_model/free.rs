@@ -64,6 +64,11 @@ impl MechanismModel {
         let followed = self.integrate(end, log);
         self.course.progress = self.course.path_progress;
         match (followed, stayed) {
+            (Err(Failure::Event), _) => {
+                self.stop_free(start, h);
+                self.complete_step(start, self.course.time - start, log);
+                Err(Failure::Event)
+            }
             (Ok(()), _) => {
                 self.set_driver_rates(start, h, 1.0);
                 self.advance_forces(h);
@@ -115,6 +120,7 @@ impl MechanismModel {
             solution,
             path,
             course,
+            ends_at_events,
             ..
         } = self
         else {
@@ -125,19 +131,28 @@ impl MechanismModel {
             path,
             forces: &course.force_inputs,
         };
+        let advance = match ends_at_events {
+            true => FreeMotion::advance_to_event,
+            false => FreeMotion::advance,
+        };
         let steps = state.integrator.statistics.accepted;
         let moved = free
             .resume(solver, state)
             .and_then(|()| free.jump(solver, &given, &path.to))
-            .and_then(|()| free.advance(solver, solution, &given, end));
+            .and_then(|()| advance(free, solver, solution, &given, end));
         free.save(state);
+        let reached = state.integrator.t;
         let taken = free.statistics().accepted.wrapping_sub(steps);
         let progress = &mut course.path_progress.substeps;
         *progress = progress.saturating_add(u32::try_from(taken).unwrap_or(u32::MAX));
         self.note_states();
         self.log_crossings(log);
         self.log_events(log);
-        moved.map_err(|error| Failure::Discarded(error.to_string()))
+        moved.map_err(|error| Failure::Discarded(error.to_string()))?;
+        match reached < end {
+            true => Err(Failure::Event),
+            false => Ok(()),
+        }
     }
 
     /// Takes the committed pose and the states that the host has set for those of the motion, when

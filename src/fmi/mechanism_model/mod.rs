@@ -101,6 +101,8 @@ pub struct MechanismModel {
     parts: Option<Box<Parts>>,
     /// Time of the dead point in front of which the last step has stopped.
     dead_point: Option<f64>,
+    /// Whether steps end at events of free motion.
+    ends_at_events: bool,
 }
 
 /// Everything that decides how the model goes on, apart from the solver's pose and the rates of the
@@ -252,6 +254,7 @@ impl MechanismModel {
             path,
             parts: None,
             dead_point: None,
+            ends_at_events: false,
             file_pose,
             solver,
             mechanism,
@@ -507,6 +510,10 @@ impl Model for MechanismModel {
     #[inline(always)]
     fn step(&mut self, size: f64, end: f64, stays: bool, log: &Logger) -> Result<(), Failure> {
         self.take_step(size, end, stays, log)
+    }
+
+    fn end_steps_at_events(&mut self, end: bool) {
+        self.ends_at_events = end;
     }
 
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {
