@@ -28,11 +28,12 @@
 //! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
 //! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
 //! | `page` | a mechanism that is moved by hand, drawn and saved: what a page holds |
+//! | `exchange` | mechanisms of other programs, read and written |
 //! | `fmi` | FMI 2.0 and 3.0 for any model, and for mechanisms: instance, C interface, model description, archive |
 //! | `cli` | the commands of the program `biela` |
 //!
 //! Each layer uses only layers above it in this table. `drawing`, `page`, `fmi` and `cli` are
-//! features of these names; `png` adds pictures in this format to `drawing`.
+//! features of these names; `cli` includes `exchange`, `png` adds pictures in this format to `drawing`.
 //!
 //! # Motion
 //!
@@ -84,6 +85,8 @@ pub mod cli;
 #[cfg(feature = "drawing")]
 pub mod drawing;
 pub mod dynamics;
+#[cfg(feature = "cli")]
+pub mod exchange;
 #[cfg(feature = "fmi")]
 pub mod fmi;
 pub mod kinematics;

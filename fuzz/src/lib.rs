@@ -6,6 +6,7 @@
 pub mod attack;
 pub mod call_sequence;
 pub mod fmu_state;
+pub mod import;
 pub mod mechanism_file;
 pub mod mutation;
 

@@ -58,6 +58,16 @@ fn mechanism_files() {
 }
 
 #[test]
+fn imports() {
+    let formats = ["asmt", "dxf", "linkage2", "pmks", "pylinkage"];
+    let folders = formats.map(|format| format!("../tests/exchange/samples/{format}"));
+    let corpus = folders.iter().flat_map(|folder| files(folder));
+    let mut corpus: Vec<Vec<u8>> = corpus.collect();
+    corpus.extend(files("corpus/import"));
+    run(fuzz::import::run, &corpus, 5000);
+}
+
+#[test]
 fn fmu_states() {
     run(fuzz::fmu_state::run, &files("corpus/fmu_state"), 3000);
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::message::Message;
 use super::stdout::shown;
+use crate::exchange;
 use crate::kinematics;
 
 /// A command that could not do its work.
@@ -34,6 +35,15 @@ pub(super) enum Error {
     /// The server of `watch` cannot listen.
     #[error("cannot listen on port {port}: {source}; --port names another, 0 a free one")]
     Listen { port: u16, source: io::Error },
+    /// A file of another program cannot be imported.
+    #[error("{file}: {error}")]
+    Import {
+        file: String,
+        error: exchange::Error,
+    },
+    /// An imported mechanism has errors as a mechanism file, which have been shown.
+    #[error("the mechanism of {format} is no mechanism of biela yet: correct the file")]
+    Imported { format: &'static str },
     /// The archive of an FMU cannot be written.
     #[error("cannot write the archive: {0}")]
     Archive(io::Error),
@@ -68,7 +78,11 @@ impl Error {
     /// Returns 1 for an error in the mechanism, 2 for one in the command.
     pub(super) fn exit_status(&self) -> u8 {
         match self {
-            Self::Diagnosed | Self::Mechanism { .. } | Self::Stopped { .. } => 1,
+            Self::Diagnosed
+            | Self::Mechanism { .. }
+            | Self::Stopped { .. }
+            | Self::Import { .. }
+            | Self::Imported { .. } => 1,
             // A reader that has read enough closes the pipe.
             Self::Write { source, .. } if source.kind() == io::ErrorKind::BrokenPipe => 0,
             Self::Usage(_)

@@ -24,6 +24,13 @@ impl InputFiles {
         }
     }
 
+    /// Returns one file that is no mechanism file.
+    pub(super) fn only(kind: &'static str, file: &Path) -> Self {
+        Self {
+            files: vec![(kind, file.to_owned())],
+        }
+    }
+
     /// Adds one more file.
     pub(super) fn add(&mut self, kind: &'static str, path: &Path) {
         self.files.push((kind, path.to_owned()));

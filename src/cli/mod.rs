@@ -20,6 +20,7 @@ mod library;
 mod live;
 mod message;
 mod motion;
+mod new_file;
 mod output;
 mod page_solver;
 mod picture;
@@ -56,6 +57,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     New(commands::new::New),
+    Import(commands::import::Import),
     Check(commands::check::Check),
     Run(commands::run::Run),
     Range(commands::range::Range),
@@ -88,6 +90,7 @@ pub fn status(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     };
     let outcome = match arguments.command {
         Command::New(command) => command.run(),
+        Command::Import(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
         Command::Range(command) => command.run(),

@@ -67,6 +67,8 @@ pub use diagnostic::{Diagnostic, Label, Severity};
 pub(crate) use expression::Values;
 #[cfg(feature = "page")]
 pub(crate) use expression::constant;
+#[cfg(feature = "cli")]
+pub(crate) use expression::is_taken;
 pub use expression::{Expression, ExpressionError, LinearForm, Variable};
 pub use force::{
     ElasticStop, Force, ForceComponent, ForceLaw, Load, PassiveCause, RegularisedFriction, Spring,

@@ -15,7 +15,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 
 /// The layers, and those that each may use.
-const LAYERS: [(&str, &[&str]); 8] = [
+const LAYERS: [(&str, &[&str]); 9] = [
     ("unit", &[]),
     ("mechanism", &["unit"]),
     ("kinematics", &["unit", "mechanism"]),
@@ -26,6 +26,7 @@ const LAYERS: [(&str, &[&str]); 8] = [
         &["unit", "mechanism", "kinematics", "dynamics", "drawing"],
     ),
     ("fmi", &["unit", "mechanism", "kinematics", "dynamics"]),
+    ("exchange", &["unit", "mechanism", "kinematics", "drawing"]),
     (
         "cli",
         &[
@@ -36,6 +37,7 @@ const LAYERS: [(&str, &[&str]); 8] = [
             "drawing",
             "page",
             "fmi",
+            "exchange",
         ],
     ),
 ];

@@ -5,6 +5,7 @@ pub(super) mod check;
 pub(super) mod completions;
 pub(super) mod draw;
 pub(super) mod export;
+pub(super) mod import;
 pub(super) mod linearize;
 pub(super) mod new;
 pub(super) mod page;

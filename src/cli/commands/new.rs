@@ -1,13 +1,12 @@
 //! `biela new`
 
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use crate::cli::error::Error;
-use crate::cli::message::tell;
+use crate::cli::new_file::{create, exists, tell_now_check};
 use crate::mechanism::{is_identifier, similar_identifier};
 
 /// Write a commented mechanism to start from.
@@ -146,9 +145,7 @@ impl New {
         for (name, text) in &files {
             create(&folder.join(name), text)?;
         }
-        let path = folder.join(&files[0].0);
-        let (shown, quoted) = (path.display(), quoted(&path.to_string_lossy()));
-        tell(format_args!("wrote {shown}; now: biela check {quoted}"));
+        tell_now_check(&folder.join(&files[0].0));
         Ok(())
     }
 }
@@ -159,36 +156,10 @@ fn renamed(template: &Template, name: &str) -> String {
     template.text.replacen(&line(template.name), &line(name), 1)
 }
 
-/// Writes a new file.
-fn create(path: &Path, text: &str) -> Result<(), Error> {
-    let created = std::fs::File::create_new(path);
-    let written = created.and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|source| match source.kind() {
-        std::io::ErrorKind::AlreadyExists => exists(path),
-        _ => Error::write(path)(source),
-    })
-}
-
-/// Quotes an argument for a shell, if that is necessary.
-fn quoted(argument: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "_-./:\\,+@%=".contains(c);
-    let special = |c: char| !plain(c) || (c == '\\' && !cfg!(windows));
-    if !argument.contains(special) {
-        argument.to_owned()
-    } else if cfg!(windows) {
-        // No file name on Windows has a double quote.
-        format!("\"{argument}\"")
-    } else {
-        format!("'{}'", argument.replace('\'', "'\\''"))
-    }
-}
-
-fn exists(path: &Path) -> Error {
-    Error::Usage(format!("`{}` is there already", path.display()))
-}
-
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
     use crate::mechanism::{Mechanism, Source};
 
@@ -222,23 +193,6 @@ mod tests {
             assert_eq!(mechanism.name, "new_one");
             assert!(warnings.is_empty(), "{}", template.name);
             assert_eq!(mechanism.table_files.len(), template.tables.len());
-        }
-    }
-
-    #[cfg(not(windows))]
-    #[test]
-    fn what_a_shell_would_take_apart_is_quoted() {
-        for plain in ["a.toml", "./sub-1/a_b.toml", "../año/x.toml"] {
-            assert_eq!(quoted(plain), plain);
-        }
-        for (special, expected) in [
-            ("a b.toml", "'a b.toml'"),
-            ("$HOME/a.toml", "'$HOME/a.toml'"),
-            ("a\\b", "'a\\b'"),
-            ("it's", "'it'\\''s'"),
-            ("~/a", "'~/a'"),
-        ] {
-            assert_eq!(quoted(special), expected);
         }
     }
 }

@@ -51,6 +51,15 @@ pub(super) fn compose(composer: &mut Composer, body: BodyId) {
     }
 }
 
+impl Link {
+    /// Returns the corners of the points' convex hull, counter-clockwise \[m\].
+    #[must_use]
+    pub fn hull(&self) -> Vec<[f64; 2]> {
+        let points: Vec<Point> = self.points.iter().map(|&p| p.into()).collect();
+        convex_hull(&points).into_iter().map(Into::into).collect()
+    }
+}
+
 impl Shape for Link {
     fn draw(&self, pen: &mut Pen) {
         pen.attach(Attachment::Body(self.body));

@@ -31,7 +31,7 @@ pub(super) use in_force::ExpressionInForce;
 pub use linear::LinearForm;
 pub(super) use parse::{LawOfCoupling, MovingNames, Parsed, Scope};
 pub(super) use pieces::MOST_SWITCHES;
-pub(super) use reserved::is_taken;
+pub(crate) use reserved::is_taken;
 #[cfg(feature = "cli")]
 pub(super) use reserved::taken;
 

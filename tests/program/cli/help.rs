@@ -12,6 +12,7 @@ fn help_goes_to_stdout() {
         &["draw", "--help"],
         &["export", "-h"],
         &["new", "-h"],
+        &["import", "--help"],
         &["range", "--help"],
         &["tolerance", "--help"],
         &["watch", "--help"],

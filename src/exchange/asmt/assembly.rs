@@ -1,0 +1,341 @@
+//! Parts, markers, joints and motions of the file.
+
+use std::collections::HashMap;
+
+use super::place::{Place, Plane, Vector, are_parallel, are_perpendicular};
+use super::tree::{Node, Tree};
+use crate::exchange::error::Error;
+
+pub(super) struct Assembly {
+    pub(super) name: String,
+    pub(super) parts: Vec<Part>,
+    pub(super) markers: Vec<Marker>,
+    /// Markers by their paths.
+    by_path: HashMap<String, usize>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) motions: Vec<Motion>,
+    pub(super) limits: Vec<Limit>,
+    /// Number of forces and torques.
+    pub(super) forces: usize,
+    pub(super) gravity: Vector,
+    /// Start, stop and step \[s\].
+    pub(super) times: Option<[f64; 3]>,
+}
+
+pub(super) struct Part {
+    pub(super) name: String,
+    pub(super) place: Place,
+    pub(super) mass: PartMass,
+}
+
+pub(super) struct PartMass {
+    pub(super) mass: f64,
+    pub(super) inertias: [f64; 3],
+    pub(super) place: Place,
+}
+
+#[derive(Clone)]
+pub(super) struct Marker {
+    pub(super) path: String,
+    pub(super) name: String,
+    /// `None` on the assembly.
+    pub(super) part: Option<usize>,
+    pub(super) place: Place,
+}
+
+pub(super) struct Joint {
+    pub(super) class: String,
+    pub(super) name: String,
+    pub(super) markers: [Marker; 2],
+    /// Radii, distance, offset or pitch, as the class has them.
+    pub(super) numbers: Vec<f64>,
+}
+
+pub(super) struct Motion {
+    pub(super) class: String,
+    pub(super) name: String,
+    pub(super) markers: [Marker; 2],
+    /// The expression of a rotation or translation.
+    pub(super) text: String,
+}
+
+pub(super) struct Limit {
+    pub(super) name: String,
+    pub(super) turns: bool,
+    pub(super) markers: [Marker; 2],
+    pub(super) text: String,
+    /// `=>` for a least value, `=<` for a greatest one.
+    pub(super) kind: String,
+}
+
+/// Keys of the numbers that joints have.
+const NUMBERS: [&str; 8] = [
+    "radiusI",
+    "radiusJ",
+    "pitchRadius",
+    "pitch",
+    "theIzJz",
+    "distanceIJ",
+    "offset",
+    "constant",
+];
+
+impl Assembly {
+    pub(super) fn read(tree: &Tree) -> Result<Self, Error> {
+        let root = tree.assembly()?;
+        let name = root.required_value("Name", "the assembly")?.to_owned();
+        let mut assembly = Self {
+            parts: Vec::new(),
+            markers: Vec::new(),
+            by_path: HashMap::new(),
+            joints: Vec::new(),
+            motions: Vec::new(),
+            limits: Vec::new(),
+            forces: 0,
+            gravity: [0.0; 3],
+            times: None,
+            name,
+        };
+        let path = format!("/{}", assembly.name);
+        assembly.read_markers(root, &path, None, &Place::ORIGIN)?;
+        for part in root.required("Parts", "the assembly")?.children() {
+            assembly.read_part(part, &path)?;
+        }
+        let sets = root.required("ConstraintSets", "the assembly")?;
+        if let Some(joints) = sets.child("Joints") {
+            for joint in joints.children() {
+                assembly.read_joint(joint)?;
+            }
+        }
+        let by_name: HashMap<String, [Marker; 2]> = assembly
+            .joints
+            .iter()
+            .map(|joint| (format!("{path}/{}", joint.name), joint.markers.clone()))
+            .collect();
+        for motion in sets.child("Motions").into_iter().flat_map(Node::children) {
+            let read = assembly.read_motion(motion, &by_name)?;
+            assembly.motions.push(read);
+        }
+        for limit in sets.child("Limits").into_iter().flat_map(Node::children) {
+            let read = assembly.read_limit(limit, &by_name)?;
+            assembly.limits.push(read);
+        }
+        let forces = root.child("ForceTorques");
+        assembly.forces = forces.map_or(0, |forces| forces.children().count());
+        if root.child("ConstantGravity").is_some() {
+            assembly.gravity = root.numbers("ConstantGravity", "the assembly")?;
+        }
+        if let Some(node) = root.child("SimulationParameters") {
+            let time = |key| node.numbers::<1>(key, "SimulationParameters");
+            let times = [time("tstart")?, time("tend")?, time("hout")?].map(|[t]| t);
+            let [start, stop, step] = times;
+            assembly.times = (stop > start && step > 0.0).then_some(times);
+        }
+        Ok(assembly)
+    }
+
+    fn read_part(&mut self, node: Node, path: &str) -> Result<(), Error> {
+        let name = node.required_value("Name", "a part")?.to_owned();
+        let place_of = format!("part `{name}`");
+        let place = read_place(node, &place_of)?;
+        let mass = match node.child("PrincipalMassMarker") {
+            None => PartMass {
+                mass: 0.0,
+                inertias: [0.0; 3],
+                place,
+            },
+            Some(marker) => {
+                let [mass] = marker.numbers("Mass", &place_of)?;
+                PartMass {
+                    mass,
+                    inertias: marker.numbers("MomentOfInertias", &place_of)?,
+                    place: place.then(&read_place(marker, &place_of)?),
+                }
+            }
+        };
+        let part = self.parts.len();
+        let path = format!("{path}/{name}");
+        self.parts.push(Part { name, place, mass });
+        self.read_markers(node, &path, Some(part), &place)
+    }
+
+    fn read_markers(
+        &mut self,
+        node: Node,
+        path: &str,
+        part: Option<usize>,
+        place: &Place,
+    ) -> Result<(), Error> {
+        for point in node.child("RefPoints").into_iter().flat_map(Node::children) {
+            let place = place.then(&read_place(point, "a reference point")?);
+            for marker in point.child("Markers").into_iter().flat_map(Node::children) {
+                let name = marker.required_value("Name", "a marker")?.to_owned();
+                let place = place.then(&read_place(marker, &format!("marker `{name}`"))?);
+                let path = format!("{path}/{name}");
+                let marker = Marker {
+                    path: path.clone(),
+                    name,
+                    part,
+                    place,
+                };
+                self.by_path.entry(path).or_insert(self.markers.len());
+                self.markers.push(marker);
+            }
+        }
+        Ok(())
+    }
+
+    fn read_joint(&mut self, node: Node) -> Result<(), Error> {
+        let class = node.text().to_owned();
+        let name = node.required_value("Name", &class)?.to_owned();
+        let place = format!("joint `{name}`");
+        let markers = [
+            self.marker(node.required_value("MarkerI", &place)?, &place)?,
+            self.marker(node.required_value("MarkerJ", &place)?, &place)?,
+        ];
+        let mut numbers = Vec::new();
+        for key in NUMBERS {
+            if node.child(key).is_some() {
+                let [number] = node.numbers(key, &place)?;
+                numbers.push(number);
+            }
+        }
+        self.joints.push(Joint {
+            class,
+            name,
+            markers,
+            numbers,
+        });
+        Ok(())
+    }
+
+    fn read_motion(
+        &self,
+        node: Node,
+        joints: &HashMap<String, [Marker; 2]>,
+    ) -> Result<Motion, Error> {
+        let class = node.text().to_owned();
+        let name = node.required_value("Name", &class)?.to_owned();
+        let markers = self.of_joint_or_own(node, &format!("motion `{name}`"), joints)?;
+        let text = node.value("RotationZ").or(node.value("TranslationZ"));
+        let text = text.unwrap_or_default().to_owned();
+        Ok(Motion {
+            class,
+            name,
+            markers,
+            text,
+        })
+    }
+
+    fn read_limit(
+        &self,
+        node: Node,
+        joints: &HashMap<String, [Marker; 2]>,
+    ) -> Result<Limit, Error> {
+        let turns = node.text() == "RotationLimit";
+        let name = node.required_value("Name", "a limit")?.to_owned();
+        let place = format!("limit `{name}`");
+        Ok(Limit {
+            turns,
+            markers: self.of_joint_or_own(node, &place, joints)?,
+            text: node.required_value("Limit", &place)?.to_owned(),
+            kind: node.required_value("Type", &place)?.to_owned(),
+            name,
+        })
+    }
+
+    /// Returns the markers of the joint that is named, or those of the node itself.
+    fn of_joint_or_own(
+        &self,
+        node: Node,
+        place: &str,
+        joints: &HashMap<String, [Marker; 2]>,
+    ) -> Result<[Marker; 2], Error> {
+        match node.value("MotionJoint").filter(|name| !name.is_empty()) {
+            Some(joint) => joints.get(joint).cloned().ok_or_else(|| Error::Unknown {
+                place: place.to_owned(),
+                kind: "joint",
+                name: joint.to_owned(),
+            }),
+            None => Ok([
+                self.marker(node.required_value("MarkerI", place)?, place)?,
+                self.marker(node.required_value("MarkerJ", place)?, place)?,
+            ]),
+        }
+    }
+
+    fn marker(&self, path: &str, place: &str) -> Result<Marker, Error> {
+        let index = self.by_path.get(path);
+        let marker = index.map(|index| self.markers[*index].clone());
+        marker.ok_or_else(|| Error::Unknown {
+            place: place.to_owned(),
+            kind: "marker",
+            name: path.to_owned(),
+        })
+    }
+
+    /// Returns for each part whether a fixed joint ties it to the assembly.
+    pub(super) fn grounded(&self) -> Vec<bool> {
+        let mut grounded = vec![false; self.parts.len()];
+        for joint in &self.joints {
+            if joint.class == "FixedJoint"
+                && let [Some(part), None] | [None, Some(part)] =
+                    [joint.markers[0].part, joint.markers[1].part]
+            {
+                grounded[part] = true;
+            }
+        }
+        grounded
+    }
+
+    /// Returns the plane about whose normal most revolute joints turn; without one, the plane of the
+    /// slides.
+    pub(super) fn plane(&self) -> Result<Plane, Error> {
+        let of_class = |wanted: &'static str| {
+            let joints = self
+                .joints
+                .iter()
+                .filter(move |joint| joint.class == wanted);
+            joints.map(|joint| (joint, joint.markers[0].place.z()))
+        };
+        let axes: Vec<(&Joint, Vector)> = of_class("RevoluteJoint").collect();
+        let alike = |axis: Vector| axes.iter().filter(|(_, a)| are_parallel(*a, axis)).count();
+        /// Axes that are tried: more bring nothing new.
+        const TRIED: usize = 100;
+        let mut best: Option<(usize, Vector)> = None;
+        for (_, axis) in axes.iter().take(TRIED) {
+            let count = alike(*axis);
+            if best.is_none_or(|(most, _)| count > most) {
+                best = Some((count, *axis));
+            }
+        }
+        let [x, y, z] = Place::ORIGIN.axes;
+        let normal = match best {
+            Some((_, axis)) => axis,
+            None => {
+                let slides: Vec<Vector> = of_class("TranslationalJoint").map(|(_, z)| z).collect();
+                let all = |n: &Vector| slides.iter().all(|slide| are_perpendicular(*slide, *n));
+                [z, y, x].into_iter().find(all).unwrap_or(z)
+            }
+        };
+        let plane = Plane::new(normal);
+        match axes.iter().find(|(_, axis)| !plane.is_normal(*axis)) {
+            Some((joint, _)) => Err(joint.out_of_plane()),
+            None => Ok(plane),
+        }
+    }
+}
+
+impl Joint {
+    pub(super) fn out_of_plane(&self) -> Error {
+        Error::OutOfPlane {
+            joint: self.name.clone(),
+            class: self.class.clone(),
+        }
+    }
+}
+
+fn read_place(node: Node, place: &str) -> Result<Place, Error> {
+    let at = node.numbers("Position3D", place)?;
+    Ok(Place::new(at, node.numbers("RotationMatrix", place)?))
+}

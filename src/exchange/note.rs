@@ -1,0 +1,126 @@
+//! Remarks on what did not come over, or came over changed.
+
+/// A remark on an imported mechanism, for the user and for a comment of its file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Note {
+    /// A driver that the source does not have.
+    #[error("the source has no motion: the pin or slide `{joint}` is the driver, an input")]
+    DriverChosen {
+        /// Name of the joint.
+        joint: String,
+    },
+    /// A body without joints.
+    #[error("`{name}` is left out: no joint holds it")]
+    LooseBody {
+        /// Name in the source.
+        name: String,
+    },
+    /// Parts that became one body.
+    #[error("`{other}` is one body with `{name}`: the source fixes them to each other")]
+    Merged {
+        /// Name of the body.
+        name: String,
+        /// Name of the part that it took up.
+        other: String,
+    },
+    /// A part that became ground.
+    #[error("`{name}` is part of ground: the source fixes it there")]
+    Grounded {
+        /// Name in the source.
+        name: String,
+    },
+    /// A joint that the plane makes superfluous.
+    #[error("joint `{joint}` (`{class}`) is left out: it holds nothing in the plane")]
+    HoldsNothing {
+        /// Name of the joint.
+        joint: String,
+        /// Its class in the source.
+        class: String,
+    },
+    /// A motion that biela cannot write.
+    #[error(
+        "the motion of `{name}` is left out, its coordinate is an input: `{text}` has no counterpart"
+    )]
+    Motion {
+        /// Name of the motion.
+        name: String,
+        /// Expression or class in the source.
+        text: String,
+    },
+    /// A limit that biela cannot write.
+    #[error("limit `{name}` is left out: {reason}")]
+    Limit {
+        /// Name of the limit.
+        name: String,
+        /// Reason.
+        reason: &'static str,
+    },
+    /// Masses that stand for none.
+    #[error("masses are left out: {reason}")]
+    Masses {
+        /// Reason.
+        reason: &'static str,
+    },
+    /// Forces.
+    #[error("{count} force(s) are left out: enter them under [forces]")]
+    Forces {
+        /// Number of forces.
+        count: usize,
+    },
+    /// Parts of the file that are only seen.
+    #[error("attributes of the picture are left out: {what}")]
+    Display {
+        /// Kinds of what was seen.
+        what: String,
+    },
+    /// A unit that was assumed.
+    #[error("the source names no unit of length: taken as {unit}; --length names another")]
+    Unit {
+        /// Name of the unit.
+        unit: &'static str,
+    },
+    /// A sense of turning that the source's documentation does not tell.
+    #[error(
+        "a positive speed was taken as counter-clockwise: change the sign of the speed if the source turns the other way"
+    )]
+    Sense,
+    /// Motion per step, not per second.
+    #[error("the speed of `{name}` is one per step, not per second: its angle is an input")]
+    PerStep {
+        /// Name of the driver.
+        name: String,
+    },
+    /// A way that is followed by another law.
+    #[error("`{name}` goes out and back as a cosine; the source may follow another course")]
+    Course {
+        /// Name of the driver.
+        name: String,
+    },
+    /// Something that is not connected to a body.
+    #[error("{kind} `{name}` is left out: {reason}")]
+    LeftOut {
+        /// Kind in the source.
+        kind: &'static str,
+        /// Name in the source.
+        name: String,
+        /// Reason.
+        reason: &'static str,
+    },
+    /// Entities of a drawing without a meaning.
+    #[error("{count} × {kind} left out: {reason}")]
+    Entities {
+        /// Number of them.
+        count: usize,
+        /// Kind of the entity.
+        kind: String,
+        /// Reason.
+        reason: &'static str,
+    },
+    /// A contour that a drawing leaves out.
+    #[error("layer `{layer}` is left out: the curve has a cusp there")]
+    Cusp {
+        /// Name of the layer.
+        layer: String,
+    },
+}
