@@ -5,7 +5,7 @@ use super::scene::Scene;
 use super::sheet::Sheet;
 use super::sweep::{follow, spread, sweep, usual_driver};
 use super::symbol::{Symbol, compose_dimensions, instant_centre};
-use crate::kinematics::{Error, InstantCentre, Rates, Solver};
+use crate::kinematics::{Error, InstantCentre, Pose, Rates, Solver};
 use crate::mechanism::{BodyId, DriverId, Jet};
 
 /// The contents of a diagram.
@@ -79,9 +79,9 @@ impl Diagram {
         } else {
             None
         };
-        let (mechanism, pose) = (solver.mechanism(), solver.pose());
-        let (q, parameters) = (&pose.q, &pose.parameters);
-        let mut scene = Scene::along(mechanism, parameters, q, &motion, self.traces);
+        let mut scene = self.scene_along(solver, &motion);
+        let mechanism = solver.mechanism();
+        let Pose { q, parameters, .. } = solver.pose();
         if self.dimensions {
             scene.add(compose_dimensions(mechanism, parameters, q));
         }
@@ -99,6 +99,19 @@ impl Diagram {
         }
         let poses = spread(&motion, mechanism.bodies.len(), self.poses);
         Ok(Sheet::with_poses(&scene, q, &poses))
+    }
+
+    /// Returns the mechanism at the solver's pose, to which the solver returns, with paths and ways
+    /// along the motion, and nothing else.
+    #[must_use]
+    pub fn scene(&self, solver: &mut Solver) -> Scene {
+        let motion = self.motion(solver);
+        self.scene_along(solver, &motion)
+    }
+
+    fn scene_along(&self, solver: &Solver, motion: &[Vec<f64>]) -> Scene {
+        let Pose { q, parameters, .. } = solver.pose();
+        Scene::along(solver.mechanism(), parameters, q, motion, self.traces)
     }
 
     /// Returns the poses of the motion, at least one.

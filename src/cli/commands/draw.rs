@@ -1,6 +1,6 @@
 //! `biela draw`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
@@ -10,13 +10,16 @@ use crate::cli::conditions::Conditions;
 use crate::cli::error::Error;
 use crate::cli::input::Input;
 use crate::cli::input_files::InputFiles;
+use crate::cli::message::Message;
 use crate::cli::motion::Motion;
-use crate::cli::picture::Format;
+use crate::cli::output::{tell_written, write};
+use crate::cli::picture::{Format, extension};
 use crate::cli::signals::Signals;
 use crate::drawing::{Diagram, Followed, ForcePlace, usual_driver};
+use crate::exchange::WorkshopDrawing;
 use crate::mechanism::Mechanism;
 
-/// Draw a mechanism as a kinematic diagram, in SVG or PNG.
+/// Draw a mechanism as a kinematic diagram, in SVG or PNG, or for the workshop, in DXF.
 ///
 /// The picture shows the pose at the start: at the drivers' start values, or as --drive and --set
 /// say. It has bodies, joints, ground, the drivers with their names, and the points of interest
@@ -26,6 +29,9 @@ use crate::mechanism::Mechanism;
 /// it can reach and its `min` and `max` permit. With --driver, --from or --to they cover the range
 /// of one driver.
 ///
+/// A DXF is in millimetres: bodies on layers of their names, pins as circles, paths, and the
+/// contours of cams and curves as arcs within 0.001 mm.
+///
 /// The same file gives the same picture; a PNG has its texts in the machine's sans-serif font.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:\n  \
@@ -34,7 +40,7 @@ use crate::mechanism::Mechanism;
 pub(in crate::cli) struct Draw {
     /// The mechanism file.
     file: PathBuf,
-    /// The picture to write; its extension, .svg or .png, decides, and `-` is SVG to stdout
+    /// The picture to write; its extension, .svg, .png or .dxf, decides, and `-` is SVG to stdout
     /// [default: the mechanism's name with .svg in the current folder].
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
@@ -89,6 +95,11 @@ pub(in crate::cli) struct Draw {
 
 impl Draw {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
+        if let Some(path) = self.output.as_deref()
+            && extension(path) == "dxf"
+        {
+            return self.for_the_workshop(path);
+        }
         let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
         if self.forces {
@@ -123,6 +134,39 @@ impl Draw {
             .map_err(|error| input.error(error))?;
         let width = self.width.unwrap_or(format.width(sheet.width()));
         format.write(&path, &sheet, width, self.transparent)
+    }
+
+    /// Writes a DXF.
+    fn for_the_workshop(&self, path: &Path) -> Result<(), Error> {
+        let options = [
+            ("--poses", self.poses > 0),
+            ("--dimensions", self.dimensions),
+            ("--instant-centres", self.instant_centres),
+            ("--width", self.width.is_some()),
+            ("--forces", self.forces),
+            ("--transparent", self.transparent),
+        ];
+        if let Some((option, _)) = options.into_iter().find(|(_, given)| *given) {
+            return Err(Error::Usage(format!(
+                "{option} is of pictures: leave it out for a drawing in DXF"
+            )));
+        }
+        let input = Input::read(&self.file)?;
+        InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(path)])?;
+        let diagram = Diagram {
+            traces: !self.no_traces,
+            followed: self.followed(&input.mechanism)?,
+            ..Diagram::default()
+        };
+        let mut solver = self.conditions.solver_at_start(&input)?;
+        let scene = diagram.scene(&mut solver);
+        let drawing = WorkshopDrawing::new(&scene, &solver);
+        write(path, drawing.text.as_bytes())?;
+        for note in drawing.notes {
+            Message::Warning(note.to_string()).show();
+        }
+        tell_written(path);
+        Ok(())
     }
 
     /// Returns the driver that options name or bound.
