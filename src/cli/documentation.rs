@@ -311,7 +311,7 @@ fn page(
 }
 
 /// Returns author, version, licence and copyright, as far as the file has them.
-fn about(mechanism: &Mechanism) -> String {
+pub(super) fn about(mechanism: &Mechanism) -> String {
     let rows = [
         ("Author", &mechanism.author),
         ("Version", &mechanism.version),
@@ -391,7 +391,7 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
 }
 
 /// Returns name, value, unit, limits and meaning of a variable that is a parameter.
-fn parameter(variable: &Variable<Quantity>, values: &[f64]) -> Option<[String; 5]> {
+pub(super) fn parameter(variable: &Variable<Quantity>, values: &[f64]) -> Option<[String; 5]> {
     let (Kind::Real { unit, min, max, .. }, Quantity::Parameter(parameter)) =
         (&variable.kind, &variable.quantity)
     else {
@@ -480,7 +480,10 @@ fn name_of(unit: Option<Unit>) -> String {
 }
 
 /// Returns a table; a word if it has no rows.
-fn table<const N: usize>(header: &[&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+pub(super) fn table<const N: usize>(
+    header: &[&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+) -> String {
     let mut html = String::from("<div class=\"table\"><table>\n<thead><tr>");
     for cell in header {
         let _ = write!(html, "<th scope=\"col\">{cell}</th>");

@@ -1,6 +1,6 @@
 //! `biela check`
 
-mod forces;
+pub(in crate::cli) mod forces;
 pub(in crate::cli) mod json;
 
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -147,22 +147,36 @@ impl Check {
 }
 
 fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
+    let mut title = mechanism.name.clone();
+    if !mechanism.description.is_empty() {
+        let _ = write!(title, ": {}", mechanism.description);
+    }
+    let mut out = format!("{title}\n\n");
+    for (label, count, names) in equations(mechanism) {
+        let _ = writeln!(out, "  {label:<20}{count:>4}    {names}");
+    }
+    out
+}
+
+/// Returns the numbers of bodies, unknowns, constraints, drivers and freedoms, each with its label and
+/// its names.
+pub(in crate::cli) fn equations(mechanism: &Arc<Mechanism>) -> Vec<(&'static str, usize, String)> {
     let system = System::new(Arc::clone(mechanism));
     let joints = equations_of_joints(&system);
-    let mut out = String::new();
-    let mut line = |label: &str, count: usize, names: Vec<String>| {
-        let _ = writeln!(out, "  {label:<20}{count:>4}    {}", names.join(", "));
+    let mut rows = Vec::new();
+    let mut row = |label: &'static str, count: usize, names: Vec<String>| {
+        rows.push((label, count, names.join(", ")));
     };
     let bodies = mechanism.bodies.iter().map(|body| body.name.clone());
-    line("bodies", bodies.len(), bodies.collect());
+    row("bodies", bodies.len(), bodies.collect());
     let unknowns = format!("x, y, phi of each body{}", contacts_text(&system));
-    line("unknowns", system.unknowns(), vec![unknowns]);
+    row("unknowns", system.unknowns(), vec![unknowns]);
     let count = joints.iter().sum::<usize>() + mechanism.constraints.len();
     let joints = mechanism.joints.iter().zip(&joints);
     let joints = joints.map(|(joint, rows)| format!("{} ({rows})", joint.name));
     let constraints = mechanism.constraints.iter();
     let constraints = constraints.map(|constraint| format!("{} (1)", constraint.name));
-    line("constraints", count, joints.chain(constraints).collect());
+    row("constraints", count, joints.chain(constraints).collect());
     let drivers = mechanism.drivers.iter().map(|driver| {
         let source = match driver.source {
             DriverSource::Input { .. } => "input",
@@ -178,15 +192,11 @@ fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
         .zip(drivers)
         .partition(|(driver, _)| driver.is_free());
     let names = |list: Vec<(_, String)>| list.into_iter().map(|(_, text)| text).collect();
-    line("drivers", driven.len(), names(driven));
+    row("drivers", driven.len(), names(driven));
     if !free.is_empty() {
-        line("freedoms", free.len(), names(free));
+        row("freedoms", free.len(), names(free));
     }
-    let mut title = mechanism.name.clone();
-    if !mechanism.description.is_empty() {
-        let _ = write!(title, ": {}", mechanism.description);
-    }
-    format!("{title}\n\n{out}")
+    rows
 }
 
 /// Tells inertia and acceleration of each freedom at the start, and how they swing if they are at rest

@@ -11,6 +11,7 @@ pub(super) mod new;
 pub(super) mod page;
 pub(super) mod platforms;
 pub(super) mod range;
+pub(super) mod report;
 pub(super) mod run;
 pub(super) mod schema;
 pub(super) mod tolerance;

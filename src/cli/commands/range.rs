@@ -27,7 +27,7 @@ use crate::cli::picture::Format;
 use crate::cli::plot::{MOST_BODIES, axis, panel, varies};
 use crate::cli::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample};
+use crate::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample, Solver};
 use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};
 
 /// Find how far a driver can go.
@@ -166,6 +166,20 @@ impl Range {
         }
         Ok((0..count).map(DriverId).collect())
     }
+}
+
+/// Returns the lines that tell the range of a driver from the solver's pose, and its chart.
+pub(in crate::cli) fn told(solver: &mut Solver, driver: DriverId) -> (String, Chart) {
+    let mechanism = Arc::clone(solver.mechanism());
+    let start = solver.pose().drivers[driver.index()];
+    let range = solver.range(driver, &RangeSettings::default());
+    let derived = DerivedRange::all(solver, driver, &range, None);
+    let mut text = String::new();
+    describe(&mut text, &mechanism, driver, start, &range, &derived);
+    if mechanism.has_dynamics() {
+        describe_largest(&mut text, solver, driver, &range, 0.0);
+    }
+    (text, chart(&mechanism, driver, &range, &derived))
 }
 
 /// Returns the reason why a range has no poses: from its start the driver does not get to the

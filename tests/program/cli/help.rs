@@ -17,6 +17,7 @@ fn help_goes_to_stdout() {
         &["tolerance", "--help"],
         &["watch", "--help"],
         &["page", "--help"],
+        &["report", "-h"],
         &["schema", "--help"],
         &["completions", "-h"],
     ] {

@@ -12,5 +12,6 @@ mod overwriting;
 mod pictures_of_runs;
 mod program;
 mod range;
+mod report;
 mod run;
 mod tolerance;

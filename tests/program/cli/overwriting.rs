@@ -33,7 +33,7 @@ fn the_mechanism_file_stays_what_it_is() {
     altered(folder, "tlv", &[]);
     std::fs::create_dir(folder.join("sub")).unwrap();
     // Whatever the name, it may have the extension of a result.
-    for name in ["tlv.svg", "tlv.html"] {
+    for name in ["tlv.svg", "tlv.html", "tlv.dxf"] {
         std::fs::hard_link(folder.join("tlv.toml"), folder.join(name)).unwrap();
     }
     for (arguments, output) in [
@@ -45,6 +45,8 @@ fn the_mechanism_file_stays_what_it_is() {
         (&["range", "tlv.toml", "--plot"], "tlv.svg"),
         (&["draw", "tlv.toml", "-o"], "tlv.svg"),
         (&["export", "tlv.toml", "-o"], "tlv.toml"),
+        (&["report", "tlv.toml", "-o"], "tlv.html"),
+        (&["draw", "tlv.toml", "-o"], "tlv.dxf"),
         (&["export", "tlv.toml", "--model-description"], "tlv.toml"),
     ] {
         let expected = format!("nothing is written to `{output}`: it is the mechanism file");

@@ -10,11 +10,11 @@ use crate::mechanism::{DriverId, Expression, Indeterminate, Jet, Mechanism, Unit
 const ROUNDING: f64 = 1e-12;
 
 /// The forces of a mechanism at rest, all inputs of forces being zero.
-pub(super) struct Forces {
+pub(in crate::cli) struct Forces {
     /// Name, mass \[kg\] and inertia \[kg m²\] of each body with mass.
-    masses: Vec<(String, f64, f64)>,
+    pub(in crate::cli) masses: Vec<(String, f64, f64)>,
     /// Name, value and unit of each output, those that are zero or trivial at rest left out.
-    pub(super) values: Vec<(String, f64, &'static str)>,
+    pub(in crate::cli) values: Vec<(String, f64, &'static str)>,
     /// Joints and constraints with indeterminate reactions.
     pub(super) indeterminate: Vec<String>,
     /// Efforts of drivers against friction.
@@ -75,7 +75,7 @@ impl Forces {
     /// # Errors
     ///
     /// Those of [`Solution::solve`].
-    pub(super) fn at_rest(solver: &mut Solver) -> Result<Self, Error> {
+    pub(in crate::cli) fn at_rest(solver: &mut Solver) -> Result<Self, Error> {
         let mechanism = Arc::clone(solver.mechanism());
         let mut solution = Solution::new(solver);
         solution.seek_forces(solver);
