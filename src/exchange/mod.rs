@@ -10,6 +10,7 @@
 //! | `pylinkage` | JSON of pylinkage |
 //! | `dxf` | drawings, by a convention on their layers, read and written |
 //! | `names`, `text` | the mechanism file of a draft |
+//! | `ssp` | an FMU as a system of SSP |
 //! | `note` | [`Note`]: what did not come over, or came over changed |
 //! | `error` | [`Error`]: why a file gives no mechanism |
 //!
@@ -25,12 +26,14 @@ mod note;
 mod pmks;
 mod pylinkage;
 mod sketch;
+mod ssp;
 mod text;
 
 pub use draft::{Draft, LengthUnit};
 pub use dxf::WorkshopDrawing;
 pub use error::Error;
 pub use note::Note;
+pub use ssp::write_ssp;
 
 /// Most bytes of a file that is read.
 pub const MOST_BYTES: usize = 64 << 20;

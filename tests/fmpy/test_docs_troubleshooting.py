@@ -28,6 +28,7 @@ FILES_WITHOUT_MESSAGES = {
     "cli/commands/check/forces.rs": "the report of `check`",
     "cli/commands/range/forces.rs": "the report of `range`",
     "fmi/log.rs": "descriptions of the log categories",
+    "exchange/ssp.rs": "the XML of systems",
     "exchange/text.rs": "the mechanism file that `import` writes",
     "kinematics/reference.rs": "the oracle of the tests",
 }

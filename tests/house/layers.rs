@@ -26,7 +26,10 @@ const LAYERS: [(&str, &[&str]); 9] = [
         &["unit", "mechanism", "kinematics", "dynamics", "drawing"],
     ),
     ("fmi", &["unit", "mechanism", "kinematics", "dynamics"]),
-    ("exchange", &["unit", "mechanism", "kinematics", "drawing"]),
+    (
+        "exchange",
+        &["unit", "mechanism", "kinematics", "drawing", "fmi"],
+    ),
     (
         "cli",
         &[

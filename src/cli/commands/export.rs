@@ -16,7 +16,8 @@ use crate::cli::output::write;
 use crate::cli::page_solver;
 use crate::cli::runtime::{self, FoundLibrary};
 use crate::cli::stdout::is_stdout;
-use crate::fmi::{Platform, RuntimeLibrary, Version, describe, write_fmu};
+use crate::exchange::write_ssp;
+use crate::fmi::{Platform, RuntimeLibrary, Version, describe, variables, write_fmu};
 use crate::kinematics::Solver;
 
 /// Export a mechanism as an FMU, for co-simulation and for model exchange.
@@ -35,12 +36,14 @@ use crate::kinematics::Solver;
 /// The same file and the same libraries give the same bytes. Only if the environment variable SOURCE_DATE_EPOCH gives
 /// a time (seconds since 1970) does the model description say when it was generated.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: biela export four_bar.toml -o four_bar.fmu")]
+#[command(after_help = "Examples:\n  \
+        biela export four_bar.toml -o four_bar.fmu\n  \
+        biela export four_bar.toml --ssp")]
 pub(in crate::cli) struct Export {
     /// The mechanism file.
     file: PathBuf,
-    /// The FMU to write, `-` for stdout [default: the mechanism's name with .fmu in the current
-    /// folder].
+    /// The FMU to write, `-` for stdout [default: the mechanism's name with .fmu, with --ssp .ssp, in
+    /// the current folder].
     #[arg(short, long, value_name = "FMU")]
     output: Option<PathBuf>,
     /// Version of FMI: 2 for FMI 2.0, 3 for FMI 3.0. The library in the FMU is the same.
@@ -62,6 +65,10 @@ pub(in crate::cli) struct Export {
     /// FMI 3.0 always has them.
     #[arg(long, conflicts_with = "model_description")]
     terminals: bool,
+    /// Write a system of SSP 1.0, a file .ssp, which holds the FMU and the values of its parameters
+    /// with their units; for hosts that connect FMUs.
+    #[arg(long, conflicts_with = "model_description")]
+    ssp: bool,
     /// Leave out the page on which the mechanism is moved by hand.
     #[arg(long, conflicts_with = "model_description")]
     no_page: bool,
@@ -79,9 +86,15 @@ impl Export {
             let description = describe(mechanism, solver.structure(), self.fmi);
             return write(&path, &description.write(generated.as_deref()));
         }
+        if self.ssp && self.fmi == Version::Fmi3 {
+            return Err(Error::Usage(
+                "--ssp: a system of SSP 1.0 holds FMUs of FMI 2.0; leave out --fmi 3".to_owned(),
+            ));
+        }
+        let extension = if self.ssp { "ssp" } else { "fmu" };
         let path = self
             .output
-            .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", mechanism.name)));
+            .unwrap_or_else(|| PathBuf::from(format!("{}.{extension}", mechanism.name)));
         let found = runtime::find(self.runtime.as_deref())?;
         let found = runtime::narrow(found, &self.platforms)?;
         for library in found.iter().filter_map(|found| found.path.as_deref()) {
@@ -96,8 +109,14 @@ impl Export {
             false => page_solver::find(None)?,
         };
         let form = Form::new(self.fmi, self.terminals);
-        let fmu = pack(&input, &solver, form, &libraries, page.as_deref())?;
-        write(&path, &fmu)?;
+        let mut content = pack(&input, &solver, form, &libraries, page.as_deref())?;
+        if self.ssp {
+            let mut archive = Cursor::new(Vec::new());
+            write_ssp(&mut archive, mechanism, &variables(mechanism), &content)
+                .map_err(Error::Archive)?;
+            content = archive.into_inner();
+        }
+        write(&path, &content)?;
         let name = if is_stdout(&path) {
             "stdout".into()
         } else {
