@@ -15,6 +15,10 @@ use crate::mechanism::{Mechanism, Unit};
 const SPACES: &str = "xmlns:ssc=\"http://ssp-standard.org/SSP1/SystemStructureCommon\" \
                       xmlns:ssv=\"http://ssp-standard.org/SSP1/SystemStructureParameterValues\"";
 
+/// Namespace of OMSimulator's annotations.
+const OMS: &str =
+    "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd";
+
 /// Writes a system with one FMU of FMI 2.0, whose inputs and outputs are the system's own, and a file
 /// with the values of its parameters.
 ///
@@ -161,16 +165,33 @@ fn structure<Q>(mechanism: &Mechanism, variables: &[Variable<Q>]) -> String {
          </ssd:ParameterBindings>\n      \
          </ssd:Component>\n    \
          </ssd:Elements>\n    \
-         <ssd:Connections>\n{connections}    </ssd:Connections>\n  \
+         <ssd:Connections>\n{connections}    </ssd:Connections>\n{}  \
          </ssd:System>\n{}  \
          <ssd:DefaultExperiment startTime=\"{:?}\" stopTime=\"{:?}\"/>\n\
          </ssd:SystemStructureDescription>\n",
         escape(&mechanism.description),
         connectors("    ", true),
         connectors("        ", false),
+        master(simulation.step),
         units(connected.clone().map(|(variable, _)| variable), "ssd", "  "),
         simulation.start,
         simulation.stop,
+    )
+}
+
+/// Returns the annotation without which some versions of OMSimulator refuse a system: a master with
+/// fixed steps \[s\].
+fn master(step: f64) -> String {
+    format!(
+        "    <ssd:Annotations>\n      \
+         <ssc:Annotation type=\"org.openmodelica\">\n        \
+         <oms:Annotations xmlns:oms=\"{OMS}\">\n          \
+         <oms:SimulationInformation>\n            \
+         <oms:FixedStepMaster description=\"oms-ma\" stepSize=\"{step:?}\"/>\n          \
+         </oms:SimulationInformation>\n        \
+         </oms:Annotations>\n      \
+         </ssc:Annotation>\n    \
+         </ssd:Annotations>\n"
     )
 }
 
