@@ -148,14 +148,11 @@ impl Link {
     fn read(part: &str) -> Result<Self, Error> {
         let wrong = || broken(part);
         let (kinds, rest) = part.split_at_checked(2).ok_or_else(wrong)?;
-        let is_root = match &kinds[..1] {
-            "Y" => true,
-            "N" => false,
-            _ => return Err(wrong()),
-        };
-        let is_block = match &kinds[1..] {
-            "R" => false,
-            "P" => true,
+        let (is_root, is_block) = match kinds {
+            "YR" => (true, false),
+            "YP" => (true, true),
+            "NR" => (false, false),
+            "NP" => (false, true),
             _ => return Err(wrong()),
         };
         // Id, name, mass, inertia, centre and colour come before the joints.
