@@ -134,6 +134,14 @@ pub enum Error {
         /// Part that is wrong.
         part: String,
     },
+    /// A mechanism that programs for linkages do not have.
+    #[error(
+        "`{joint}` has no counterpart there: links with pins, rods, and slides or slots on ground have"
+    )]
+    NoLinkage {
+        /// Name of the joint or constraint.
+        joint: String,
+    },
     /// Nothing is joined to anything.
     #[error("it has no two parts that a joint connects")]
     NoJoints,

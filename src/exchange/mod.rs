@@ -10,6 +10,7 @@
 //! | `pylinkage` | JSON of pylinkage |
 //! | `dxf` | drawings, by a convention on their layers, read and written |
 //! | `names`, `text` | the mechanism file of a draft |
+//! | `pins` | [`Pins`]: a mechanism as links through pins, for links of PMKS+ and JSON of pylinkage |
 //! | `ssp` | an FMU as a system of SSP |
 //! | `note` | [`Note`]: what did not come over, or came over changed |
 //! | `error` | [`Error`]: why a file gives no mechanism |
@@ -23,6 +24,7 @@ mod error;
 mod linkage2;
 mod names;
 mod note;
+mod pins;
 mod pmks;
 mod pylinkage;
 mod sketch;
@@ -33,6 +35,9 @@ pub use draft::{Draft, LengthUnit};
 pub use dxf::WorkshopDrawing;
 pub use error::Error;
 pub use note::Note;
+pub use pins::Pins;
+pub use pmks::pmks_link;
+pub use pylinkage::pylinkage_json;
 pub use ssp::write_ssp;
 
 /// Most bytes of a file that is read.

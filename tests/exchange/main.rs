@@ -4,6 +4,7 @@
 mod common;
 
 mod answers;
+mod back;
 mod motion;
 
 use std::path::PathBuf;

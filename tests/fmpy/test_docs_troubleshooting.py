@@ -142,6 +142,8 @@ PARTS = {
     "they are the placeholders of the source, 1 and 1": "note: masses are left out: …",
     "the unit of their inertias is known for lengths in metres only": "note: masses are left out: …",
     "the link does not tell their unit": "note: masses are left out: …",
+    "one link is driven, about a pin on ground": "note: … `…` is left out: …",
+    "the other program has units of its own": "note: masses are left out: …",
     "it is only seen": "note: … `…` is left out: …",
     "no link has it": "note: … `…` is left out: …",
     "its ends are on no two links": "note: … `…` is left out: …",

@@ -3,6 +3,7 @@
 pub(super) mod balance;
 pub(super) mod check;
 pub(super) mod completions;
+pub(super) mod convert;
 pub(super) mod draw;
 pub(super) mod export;
 pub(super) mod import;

@@ -29,6 +29,23 @@ pub(super) fn integer(text: &str) -> Option<f64> {
     Some(sign * value as f64)
 }
 
+/// Returns the digits of a whole number; a negative one begins with 0.
+pub(super) fn digits(value: f64) -> String {
+    let mut rest = value.abs() as u64;
+    let mut digits = Vec::new();
+    loop {
+        digits.push(DIGITS[(rest % 64) as usize]);
+        rest /= 64;
+        if rest == 0 {
+            break;
+        }
+    }
+    if value < 0.0 {
+        digits.push(b'0');
+    }
+    digits.into_iter().rev().map(char::from).collect()
+}
+
 /// Returns a number that is written in thousandths.
 pub(super) fn decimal(text: &str) -> Option<f64> {
     let value = integer(text)? / PARTS;
@@ -48,6 +65,9 @@ mod tests {
     fn numbers_have_64_digits_and_a_zero_for_minus() {
         for (text, value) in [("0", 0.0), ("K", 20.0), ("VG", 2000.0), ("010", -64.0)] {
             assert_eq!(integer(text), Some(value), "{text}");
+        }
+        for value in [0.0, 1.0, -1.0, 63.0, 64.0, -4095.0, 1e9] {
+            assert_eq!(integer(&digits(value)), Some(value));
         }
         assert_eq!(decimal("Fe"), Some(1.0));
         for bad in ["", "é", "+", "123456789"] {

@@ -3,10 +3,12 @@
 //! | file | subject |
 //! |---|---|
 //! | `digits` | numbers and flags in 64 digits |
-//! | `link` | the query, taken apart and put together |
+//! | `link` | the query, taken apart |
+//! | `write` | links that open a mechanism there |
 
 mod digits;
 mod link;
+mod write;
 
 use std::collections::HashMap;
 
@@ -15,6 +17,7 @@ use super::error::{Error, start_of};
 use super::note::Note;
 use super::sketch::{Bodies, Sketch};
 use link::{Joint, Query};
+pub use write::pmks_link;
 
 /// Returns whether a text is a link of PMKS+, or its query.
 pub(super) fn is_start(text: &str) -> bool {

@@ -18,6 +18,7 @@ fn help_goes_to_stdout() {
         &["watch", "--help"],
         &["page", "--help"],
         &["report", "-h"],
+        &["convert", "-h"],
         &["schema", "--help"],
         &["completions", "-h"],
     ] {

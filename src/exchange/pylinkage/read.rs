@@ -1,18 +1,22 @@
-//! JSON of pylinkage: a `Mechanism` with joints at positions and links through them.
+//! Mechanisms of pylinkage, read.
 
 use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
-use super::draft::{
+use crate::exchange::draft::{
     Coordinate, Draft, Driver, DriverSource, GROUND, JointKind, LengthUnit, Point, turn_between,
 };
-use super::error::{self, Error};
-use super::note::Note;
-use super::sketch::Sketch;
+use crate::exchange::error::{self, Error};
+use crate::exchange::note::Note;
+use crate::exchange::sketch::{Bodies, Sketch};
 
 /// Reads a file.
-pub(super) fn read(text: &str, length: Option<LengthUnit>, draft: &mut Draft) -> Result<(), Error> {
+pub(in crate::exchange) fn read(
+    text: &str,
+    length: Option<LengthUnit>,
+    draft: &mut Draft,
+) -> Result<(), Error> {
     let root: Value = serde_json::from_str(text).map_err(|error| Error::Json {
         line: error.line(),
         reason: error::start_of(&error.to_string()),
@@ -188,7 +192,7 @@ fn trackers(
 fn slides(
     joints: &[Value],
     draft: &mut Draft,
-    bodies: &super::sketch::Bodies,
+    bodies: &Bodies,
     point: &impl Fn(&str, &str) -> Result<usize, Error>,
 ) -> Result<(), Error> {
     for (index, joint) in joints.iter().enumerate() {
