@@ -190,15 +190,15 @@ pub(super) enum DriverSource {
     Motion(String),
 }
 
-/// Limits of a coordinate in its unit.
+/// Limits of a coordinate, as expressions in SI units.
 #[derive(Clone, Debug)]
 pub(super) struct Stop {
     pub(super) name: String,
     pub(super) coordinate: Coordinate,
     pub(super) from: PointRef,
     pub(super) to: PointRef,
-    pub(super) min: Option<f64>,
-    pub(super) max: Option<f64>,
+    pub(super) min: Option<String>,
+    pub(super) max: Option<String>,
 }
 
 impl Draft {

@@ -481,8 +481,8 @@ impl<'a> Document<'a> {
             coordinate: Coordinate::X,
             from,
             to: slid,
-            min: Some(0.0),
-            max: Some(length),
+            min: Some("0".to_owned()),
+            max: Some(format!("{}*{}", rounded(length, 9), draft.unit.name())),
         });
         Ok(())
     }

@@ -273,7 +273,7 @@ impl Writer<'_> {
         for (stop, name) in draft.stops.iter().zip(&self.given.stops) {
             let markers = self.pair(stop.from, stop.to);
             let kind = stop.coordinate.name();
-            let limits = self.limits(stop);
+            let limits = limits(stop);
             let origin = origin(name, &stop.name);
             let _ = writeln!(
                 text,
@@ -298,16 +298,6 @@ impl Writer<'_> {
             let _ = write!(keys, ", min = {min}, max = {max}");
         }
         keys
-    }
-
-    fn limits(&self, stop: &Stop) -> String {
-        let mut text = String::new();
-        for (key, limit) in [("min", stop.min), ("max", stop.max)] {
-            if let Some(limit) = limit {
-                let _ = write!(text, ", {key} = {}", self.value(stop.coordinate, limit));
-            }
-        }
-        text
     }
 
     fn rest(&self, text: &mut String) {
@@ -375,6 +365,21 @@ impl Writer<'_> {
             Coordinate::X | Coordinate::Distance => self.length(value),
         }
     }
+}
+
+/// Returns the keys of a stop's limits.
+fn limits(stop: &Stop) -> String {
+    let mut text = String::new();
+    for (key, limit) in [("min", &stop.min), ("max", &stop.max)] {
+        if let Some(limit) = limit {
+            // A plain number needs no quotes.
+            let _ = match limit.parse::<f64>() {
+                Ok(_) => write!(text, ", {key} = {limit}"),
+                Err(_) => write!(text, ", {key} = \"{limit}\""),
+            };
+        }
+    }
+    text
 }
 
 /// Returns a number with at most this many decimals, without zeros at its end.

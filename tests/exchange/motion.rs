@@ -146,13 +146,21 @@ fn imported_mechanisms_move_like_their_originals() {
     }
 }
 
-/// A pinion of one tooth against four turns its wheel backwards by a quarter.
+/// A pinion turns a wheel of four times its size backwards by a quarter, from where it was drawn.
 #[test]
 fn gears_turn_by_their_ratio() {
-    let path = crate::common::folder("tests/exchange/samples/linkage2/gears.linkage2");
-    let mechanism = parse(&import(&path).expect("it is right").write("gears"));
-    let (mut solver, mut way) = assembled(&mechanism);
-    straight_to(&solver, &mut way, 1.0);
-    solver.track(&way).expect("nothing stops it");
-    assert!((solver.pose().q[5] + 0.25).abs() < 1e-14);
+    for (sample, drawn) in [("linkage2/gears.linkage2", 0.0), ("asmt/gears.asmt", 0.3)] {
+        let path = crate::common::folder("tests/exchange/samples").join(sample);
+        let mechanism = parse(&import(&path).expect("it is right").write("gears"));
+        let (mut solver, mut way) = assembled(&mechanism);
+        straight_to(&solver, &mut way, 1.0);
+        solver.track(&way).expect("nothing stops it");
+        let wheel = mechanism
+            .bodies
+            .iter()
+            .position(|b| b.name.to_lowercase() == "wheel");
+        let angle = solver.pose().q[3 * wheel.expect("it has one") + 2];
+        // The angle is written with nine decimals of a degree.
+        assert!((angle - drawn + 0.25).abs() < 1e-11, "{sample}: {angle}");
+    }
 }

@@ -137,7 +137,7 @@ PARTS = {
     "two numbers up to 1e9": "`…` is not …",
     "a list of ids": "`…` is not …",
     "it limits nothing in the plane": "note: limit `…` is left out: …",
-    "its value is not a plain number": "note: limit `…` is left out: …",
+    "its value has no counterpart": "note: limit `…` is left out: …",
     "the ends of an arc are no limits of a coordinate": "note: limit `…` is left out: …",
     "they are the placeholders of the source, 1 and 1": "note: masses are left out: …",
     "the unit of their inertias is known for lengths in metres only": "note: masses are left out: …",

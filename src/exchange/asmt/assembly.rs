@@ -41,6 +41,8 @@ pub(super) struct Marker {
     /// `None` on the assembly.
     pub(super) part: Option<usize>,
     pub(super) place: Place,
+    /// Whether it is the centre of mass.
+    pub(super) is_centre: bool,
 }
 
 pub(super) struct Joint {
@@ -155,6 +157,19 @@ impl Assembly {
         };
         let part = self.parts.len();
         let path = format!("{path}/{name}");
+        if let Some(marker) = node.child("PrincipalMassMarker") {
+            // Joints may be at the centre of mass.
+            let name = marker.value("Name").unwrap_or_default().to_owned();
+            let path = format!("{path}/{name}");
+            self.by_path.insert(path.clone(), self.markers.len());
+            self.markers.push(Marker {
+                path,
+                name,
+                part: Some(part),
+                place: mass.place,
+                is_centre: true,
+            });
+        }
         self.parts.push(Part { name, place, mass });
         self.read_markers(node, &path, Some(part), &place)
     }
@@ -177,6 +192,7 @@ impl Assembly {
                     name,
                     part,
                     place,
+                    is_centre: false,
                 };
                 self.by_path.entry(path).or_insert(self.markers.len());
                 self.markers.push(marker);
@@ -187,7 +203,10 @@ impl Assembly {
 
     fn read_joint(&mut self, node: Node) -> Result<(), Error> {
         let class = node.text().to_owned();
-        let name = node.required_value("Name", &class)?.to_owned();
+        let name = match node.required_value("Name", &class)? {
+            "" => format!("{class}{}", self.joints.len() + 1),
+            name => name.to_owned(),
+        };
         let place = format!("joint `{name}`");
         let markers = [
             self.marker(node.required_value("MarkerI", &place)?, &place)?,
@@ -274,18 +293,40 @@ impl Assembly {
         })
     }
 
-    /// Returns for each part whether a fixed joint ties it to the assembly.
+    /// Returns for each part whether fixed joints tie it to the assembly, perhaps through others.
     pub(super) fn grounded(&self) -> Vec<bool> {
+        let fixed = self
+            .joints
+            .iter()
+            .filter(|joint| joint.class == "FixedJoint");
+        let mut neighbours: HashMap<Option<usize>, Vec<usize>> = HashMap::new();
+        for joint in fixed {
+            let [a, b] = joint.markers.each_ref().map(|marker| marker.part);
+            for (from, to) in [(a, b), (b, a)] {
+                neighbours.entry(from).or_default().extend(to);
+            }
+        }
         let mut grounded = vec![false; self.parts.len()];
-        for joint in &self.joints {
-            if joint.class == "FixedJoint"
-                && let [Some(part), None] | [None, Some(part)] =
-                    [joint.markers[0].part, joint.markers[1].part]
-            {
-                grounded[part] = true;
+        let mut open = vec![None];
+        while let Some(next) = open.pop() {
+            for &part in neighbours.get(&next).into_iter().flatten() {
+                if !grounded[part] {
+                    grounded[part] = true;
+                    open.push(Some(part));
+                }
             }
         }
         grounded
+    }
+
+    /// Returns the name of the document that FreeCAD puts before all names of parts, with its `#`.
+    pub(super) fn document(&self) -> &str {
+        fn document(part: &Part) -> &str {
+            part.name.find('#').map_or("", |end| &part.name[..=end])
+        }
+        let first = self.parts.first().map_or("", document);
+        let is_shared = self.parts.iter().all(|part| part.name.starts_with(first));
+        if is_shared { first } else { "" }
     }
 
     /// Returns the plane about whose normal most revolute joints turn; without one, the plane of the

@@ -101,8 +101,12 @@ impl Reader<'_> {
             .markers
             .each_ref()
             .map(|marker| self.with_x_axis(marker));
-        self.draft
-            .join(&joint.name, JointKind::Revolute, points[0], points[1]);
+        self.draft.join(
+            &self.name(&joint.name),
+            JointKind::Revolute,
+            points[0],
+            points[1],
+        );
     }
 
     fn with_x_axis(&mut self, marker: &Marker) -> PointRef {
@@ -131,7 +135,7 @@ impl Reader<'_> {
             (false, true) => JointKind::Offset(offset),
             (false, false) => JointKind::Slot,
         };
-        self.draft.join(&joint.name, kind, from, to);
+        self.draft.join(&self.name(&joint.name), kind, from, to);
     }
 
     fn weld(&mut self, joint: &Joint) {
@@ -143,8 +147,12 @@ impl Reader<'_> {
         let angles = angles.map(|(a, b)| [*a, b].map(|axis| self.plane.angle(axis)));
         let [a, b] = angles.map_or([None, None], |angles| angles.map(Some));
         let points = [self.place(i, a), self.place(j, b)];
-        self.draft
-            .join(&joint.name, JointKind::Weld, points[0], points[1]);
+        self.draft.join(
+            &self.name(&joint.name),
+            JointKind::Weld,
+            points[0],
+            points[1],
+        );
     }
 
     fn link(&mut self, joint: &Joint, distance: f64) -> Result<(), Error> {
@@ -158,8 +166,12 @@ impl Reader<'_> {
             .markers
             .each_ref()
             .map(|marker| self.with_x_axis(marker));
-        self.draft
-            .join(&joint.name, JointKind::Link(distance), points[0], points[1]);
+        self.draft.join(
+            &self.name(&joint.name),
+            JointKind::Link(distance),
+            points[0],
+            points[1],
+        );
         Ok(())
     }
 
@@ -168,11 +180,8 @@ impl Reader<'_> {
             .markers
             .each_ref()
             .map(|marker| self.with_x_axis(marker));
-        self.draft.held.push(Held {
-            name: joint.name.clone(),
-            from,
-            to,
-        });
+        let name = self.name(&joint.name);
+        self.draft.held.push(Held { name, from, to });
     }
 
     fn gear(&mut self, joint: &Joint) -> Result<(), Error> {
@@ -203,7 +212,7 @@ impl Reader<'_> {
         } else {
             JointKind::Belt(wheels)
         };
-        self.draft.join(&joint.name, kind, from, to);
+        self.draft.join(&self.name(&joint.name), kind, from, to);
         Ok(())
     }
 
@@ -216,8 +225,12 @@ impl Reader<'_> {
         let radius = radius * self.plane.side(rack.place.z());
         let rack = self.place(rack, Some(along));
         let pinion = self.with_x_axis(pinion);
-        self.draft
-            .join(&joint.name, JointKind::Rack(radius), pinion, rack);
+        self.draft.join(
+            &self.name(&joint.name),
+            JointKind::Rack(radius),
+            pinion,
+            rack,
+        );
         Ok(())
     }
 
@@ -255,8 +268,9 @@ impl Reader<'_> {
                 DriverSource::Input
             }
         };
+        let name = self.name(&motion.name);
         self.draft.drivers.push(Driver {
-            name: motion.name.clone(),
+            name,
             coordinate,
             from,
             to,
@@ -283,6 +297,7 @@ impl Reader<'_> {
         let scaled = match coordinate {
             Coordinate::Angle => text,
             _ if unit == LengthUnit::Metre => text,
+            _ if text.parse::<f64>().is_ok() => format!("{text}*{}", unit.name()),
             _ => format!("({text})*{}", unit.name()),
         };
         match side < 0.0 {
@@ -307,13 +322,13 @@ impl Reader<'_> {
             self.draft.note(note("it limits nothing in the plane"));
             return Ok(());
         };
-        let value = limit.text.trim().trim_end_matches(['d', 'D']);
-        let Ok(value) = crate::exchange::error::number(value, 0) else {
-            self.draft.note(note("its value is not a plain number"));
+        let value = translated(&limit.text).filter(|_| !limit.text.contains("time"));
+        let Some(value) = value else {
+            self.draft.note(note("its value has no counterpart"));
             return Ok(());
         };
+        let value = self.scaled(value, coordinate, side);
         let at_least = (limit.kind == "=>") == (side > 0.0);
-        let value = side * value;
         let (from, to) = self.measured(i, j, coordinate);
         let mut stops = self.draft.stops.iter_mut();
         let same =
@@ -321,8 +336,9 @@ impl Reader<'_> {
         let stop = match same {
             Some(stop) => stop,
             None => {
+                let name = self.name(&limit.name);
                 self.draft.stops.push(Stop {
-                    name: limit.name.clone(),
+                    name,
                     coordinate,
                     from,
                     to,

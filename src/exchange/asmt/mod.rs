@@ -49,6 +49,7 @@ pub(super) fn read(text: &str, length: Option<LengthUnit>, draft: &mut Draft) ->
     let plane = assembly.plane()?;
     let mut reader = Reader {
         assembly: &assembly,
+        document: assembly.document(),
         plane,
         draft,
         bodies: Vec::new(),
@@ -86,6 +87,8 @@ type Placed = HashMap<(BodyRef, String, u64), PointRef>;
 /// An assembly on its way into a draft.
 struct Reader<'a> {
     assembly: &'a Assembly,
+    /// Start of all names that is left out.
+    document: &'a str,
     plane: Plane,
     draft: &'a mut Draft,
     /// Body of each part.
@@ -94,20 +97,25 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// Returns a name without that of the document.
+    fn name(&self, name: &str) -> String {
+        let own = name.strip_prefix(self.document).unwrap_or(name);
+        own.to_owned()
+    }
+
     /// Adds a body for each part that is not fixed to the assembly.
     fn bodies(&mut self) {
         let grounded = self.assembly.grounded();
         for (index, part) in self.assembly.parts.iter().enumerate() {
             if grounded[index] {
-                self.draft.note(Note::Grounded {
-                    name: part.name.clone(),
-                });
+                let name = self.name(&part.name);
+                self.draft.note(Note::Grounded { name });
                 self.bodies.push(GROUND);
                 continue;
             }
             let [x, y] = self.plane.point(part.place.at);
             self.draft.bodies.push(Body {
-                name: part.name.clone(),
+                name: self.name(&part.name),
                 pose: Some([x, y, self.plane.turn(&part.place)]),
                 ..Body::default()
             });
@@ -120,7 +128,10 @@ impl Reader<'_> {
         for marker in &self.assembly.markers {
             let body = marker.part.map_or(GROUND, |part| self.bodies[part]);
             let mut known = self.placed.keys();
-            if body != GROUND && !known.any(|(_, path, _)| *path == marker.path) {
+            if body != GROUND
+                && !marker.is_centre
+                && !known.any(|(_, path, _)| *path == marker.path)
+            {
                 self.place(marker, None);
             }
         }
@@ -173,7 +184,7 @@ impl Reader<'_> {
             return known;
         }
         let point = Point {
-            name: marker.name.clone(),
+            name: self.name(&marker.name),
             at,
             angle,
         };
