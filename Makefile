@@ -28,7 +28,11 @@ BIN_DIR = $(DESTDIR)$(PREFIX)/bin
 LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
-BUILD = $(CARGO) build --release --locked
+# Messages of panics name sources, without the folders of this machine. The flags of the user's own
+# configuration stay in force.
+CARGO_SOURCES = $(or $(CARGO_HOME),$(HOME)/.cargo)/registry/src
+BUILD = $(CARGO) build --release --locked --config 'target."cfg(all())".rustflags = \
+    ["--remap-path-prefix=$(CARGO_SOURCES)=crates", "--remap-path-prefix=$(CURDIR)=biela"]'
 # As optimised as the tests, whose build it shares.
 MODULE = $(CARGO) build --workspace --lib --locked && \
     install -m 755 target/debug/$(BUILT_MODULE) python/biela/_biela.abi3.so
@@ -143,11 +147,19 @@ setup: ## get what building and testing need, into this folder only
 install: build ## install under PREFIX (default: ~/.local)
 	install -d "$(BIN_DIR)" "$(LIB_DIR)/$(LIBRARY_DIR)" "$(SHARE_DIR)/mechanisms"
 	install -m 755 target/release/biela "$(BIN_DIR)/biela"
+	@for library in "$(LIB_DIR)"/*/biela.*; do \
+	    [ ! -f "$$library" ] || { rm -f "$$library" && echo "removing the installed $$library"; }; \
+	done
+	@rm -f "$(LIB_DIR)/page.wasm"
 	install -m 755 target/release/$(BUILT_LIBRARY) "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
 	@for library in $$(bash scripts/runtimes.sh --current); do \
 	    echo "installing $$library"; \
 	    install -d "$(LIB_DIR)/$${library%/*}"; \
 	    install -m 755 "target/runtimes/$$library" "$(LIB_DIR)/$$library"; \
+	done
+	@for folder in $(PLATFORMS); do \
+	    ls "$(LIB_DIR)/$$folder"/biela.* >/dev/null 2>&1 || \
+	        echo "without a library for $$folder: \`make runtimes\` builds it"; \
 	done
 	@solver=$$(bash scripts/page.sh --current); if [ -n "$$solver" ]; then \
 	    echo 'installing page.wasm'; \

@@ -154,6 +154,8 @@ fn build_library(out: &Path) -> Option<(&'static str, PathBuf)> {
         .args(["build", "--release", "--package", "biela-runtime"])
         .args(["--target", &target, "--target-dir"])
         .arg(&folder)
+        // Otherwise messages of panics in every FMU name folders of this machine.
+        .env("CARGO_ENCODED_RUSTFLAGS", flags_of_library())
         // Cargo passes it on to the build script of the library, which would build itself again.
         .env_remove("CARGO_FEATURE_CLI")
         .status();
@@ -162,4 +164,21 @@ fn build_library(out: &Path) -> Option<(&'static str, PathBuf)> {
         "cannot build the runtime library"
     );
     Some((platform, folder.join(target).join("release").join(file)))
+}
+
+/// Returns the flags of this build and those that shorten the paths of sources.
+fn flags_of_library() -> String {
+    let own = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
+    let mut flags: Vec<String> = own.split('\u{1f}').map(str::to_owned).collect();
+    flags.retain(|flag| !flag.is_empty());
+    let home = env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| env::home_dir().map(|home| home.join(".cargo")));
+    for (folder, name) in [
+        (home.map(|home| home.join("registry").join("src")), "crates"),
+        (Some(PathBuf::from(variable("CARGO_MANIFEST_DIR"))), "biela"),
+    ] {
+        let folder = folder.as_deref().and_then(Path::to_str);
+        flags.extend(folder.map(|folder| format!("--remap-path-prefix={folder}={name}")));
+    }
+    flags.join("\u{1f}")
 }

@@ -3,35 +3,82 @@
 #
 # The standard library of a target is built from Debian's rust-web-src by its rustc-web where both
 # are installed, without the symbols of backtraces, which makes a library an eighth smaller; otherwise
-# it is that of rustup (`rustup target add`). The linker is zig's, from the Python package index, or
+# it is that of rustup, which the scripts add. The linker is zig's, from the Python package index, or
 # mingw's for Windows.
 
 CROSS_TOOLS=.tools/cross
 # Versions that are known to build the same bytes.
 CROSS_PACKAGES=(cargo-zigbuild==0.24.0 ziglang==0.17.0 maturin==1.16.0)
-DEBIAN_PACKAGES=(rustc-web cargo-web rust-web-src gcc-mingw-w64-x86-64-win32 llvm-14)
+# The compiler with the sources of its standard library.
+DEBIAN_PACKAGES=(rustc-web cargo-web rust-web-src)
+LLVM_PACKAGE=llvm-14
 # The oldest C library that the Linux libraries run with, and the oldest macOS.
 GLIBC=2.17
 export MACOSX_DEPLOYMENT_TARGET=11.0
 
-# Installs the linkers, and Debian's packages if the machine is Debian and the user root.
-cross_setup() {
+# Prints the targets of Rust that a platform needs.
+targets_of() { # PLATFORM
+    case $1 in
+    linux64) echo x86_64-unknown-linux-gnu ;;
+    aarch64-linux) echo aarch64-unknown-linux-gnu ;;
+    win64) echo x86_64-pc-windows-gnu ;;
+    aarch64-darwin) echo aarch64-apple-darwin ;;
+    darwin64) echo aarch64-apple-darwin x86_64-apple-darwin ;;
+    *) fail "no platform $1" "Name linux64, win64, darwin64, aarch64-linux or aarch64-darwin." ;;
+    esac
+}
+
+# Gets what building for platforms needs, and nothing that they do not: linkers, and the standard
+# library of each target.
+cross_setup() { # PLATFORM...
+    local platform target targets=()
+    for platform in "$@"; do
+        target=$(targets_of "$platform") || exit
+        # shellcheck disable=SC2206
+        targets+=($target)
+    done
     if ! [ -x "$CROSS_TOOLS/bin/maturin" ]; then
         say "installing ${CROSS_PACKAGES[*]} in $CROSS_TOOLS"
         python3 -m venv "$CROSS_TOOLS" && "$CROSS_TOOLS/bin/pip" install --quiet "${CROSS_PACKAGES[@]}" ||
             fail "cannot install ${CROSS_PACKAGES[*]}" "Check the network, and that Python has venv."
     fi
-    if has apt-get && [ "$(id -u)" = 0 ]; then
-        apt_install "${DEBIAN_PACKAGES[@]}"
-    fi
+    get_standard_libraries "${targets[@]}"
+    case " $* " in *' win64 '*)
+        has x86_64-w64-mingw32-gcc || { can_apt && apt_install gcc-mingw-w64-x86-64-win32; } ||
+            fail "no linker for Windows" "Install mingw-w64 (Debian: gcc-mingw-w64-x86-64-win32)."
+        ;;
+    esac
+    case " $* " in *' darwin64 '*)
+        [ -n "$(lipo_program)" ] || { can_apt && apt_install "$LLVM_PACKAGE"; } ||
+            fail "no lipo to join the libraries of macOS" "Install LLVM (Debian: $LLVM_PACKAGE)."
+        ;;
+    esac
 }
 
-apt_install() { # PACKAGE...
-    dpkg -s "$@" >/dev/null 2>&1 && return
-    say "installing $*"
-    { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 \
-        install -y -qq --no-install-recommends "$@"; } >/dev/null 2>&1 ||
-        fail "cannot install $*" "Install them with apt-get, or \`rustup target add\` instead."
+# Gets the standard libraries of targets that are not there: Debian's sources on Debian, otherwise
+# those of rustup.
+get_standard_libraries() { # TARGET...
+    local target missing=()
+    [ -z "$(std_sources)" ] || return 0
+    for target in "$@"; do
+        has_target "$target" || missing+=("$target")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+    if can_apt && apt_install "${DEBIAN_PACKAGES[@]}"; then
+        return
+    fi
+    say "adding ${missing[*]} with rustup"
+    has rustup && rustup target add "${missing[@]}" ||
+        fail "no Rust standard library for ${missing[*]}" "Run: rustup target add ${missing[*]}" \
+            "or install Debian's ${DEBIAN_PACKAGES[*]}."
+}
+
+# Prints the program that joins libraries of several processors, nothing if there is none.
+lipo_program() {
+    local lipo
+    for lipo in lipo llvm-lipo llvm-lipo-14; do
+        ! has "$lipo" || { echo "$lipo" && return; }
+    done
 }
 
 # Prints the folder of the sources of Debian's standard library, nothing if they or its cargo are
@@ -67,9 +114,6 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
         PATH=/usr/bin:$PATH
         build_std=(-Zbuild-std=std,panic_unwind
             -Zbuild-std-features=panic-unwind,optimize_for_size)
-    elif ! has_target "$target"; then
-        fail "no Rust standard library for $target" "Run: rustup target add $target" \
-            "or install Debian's ${DEBIAN_PACKAGES[*]}"
     fi
     export CARGO_TARGET_DIR=$directory PATH=$PWD/$CROSS_TOOLS/bin:$PATH
     # maturin adds to these; it would put its own in place of those of a configuration.

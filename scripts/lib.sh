@@ -22,6 +22,20 @@ fail() {
 
 has() { command -v "$1" >/dev/null 2>&1; }
 
+# Whether packages of Debian can be installed here.
+can_apt() { has apt-get && [ "$(id -u)" = 0 ]; }
+
+# Installs packages of Debian that are not there. A failure shows the words of apt-get.
+apt_install() { # PACKAGE...
+    local words status=0
+    dpkg -s "$@" >/dev/null 2>&1 && return
+    say "installing $*"
+    words=$({ apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 \
+        install -y -qq --no-install-recommends "$@"; } 2>&1) || status=$?
+    [ "$status" = 0 ] || printf '%s\n' "$words" | tail -n 5 | sed 's/^/  apt-get: /' >&2
+    return "$status"
+}
+
 # Prints a digest of the sources in files and folders.
 digest_of() { # PATH...
     find "$@" -type f ! -name '*.md' -print0 | LC_ALL=C sort -z | xargs -0 cat |

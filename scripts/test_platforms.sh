@@ -25,9 +25,9 @@ old_library() { # FOLDER
     rm -rf "$folder"/{lists,cache}
 }
 
-if has apt-get && [ "$(id -u)" = 0 ]; then
+if can_apt; then
     apt_install wine wine64 qemu-user-static gcc-mingw-w64-x86-64-win32 gcc-aarch64-linux-gnu \
-        libc6-dev-arm64-cross llvm-14
+        libc6-dev-arm64-cross "$LLVM_PACKAGE" || true
     old_library "$PWD/target/platforms/debian-11"
 fi
 for tool in wine qemu-aarch64-static x86_64-w64-mingw32-gcc aarch64-linux-gnu-gcc; do

@@ -11,21 +11,32 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/cross.sh
 
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
-# The build script puts them into the program.
-export BIELA_RUNTIMES=$PWD/target/runtimes
+# The build script puts what is in it into the program.
+export BIELA_RUNTIMES=$CARGO_TARGET_DIR/wheel-runtimes
 
 wheel() { # TARGET [ARGUMENT]...
     cross_build 'maturin build --zig' "$1" --out target/wheels "${@:2}"
 }
 
-libraries=$(bash scripts/runtimes.sh --current | wc -l)
-[ "$libraries" -gt 0 ] || fail "there are no current libraries" "Run \`make runtimes\` first."
-say "packing the libraries of $libraries platforms"
-[ -n "$(bash scripts/page.sh --current)" ] || say "without the solver for pages: run \`make page\` first"
-cross_setup
+libraries=$(bash scripts/runtimes.sh --current)
+[ -n "$libraries" ] || fail "there are no current libraries" "Run \`make runtimes\` first."
+say "packing the libraries" $libraries
+rm -rf "$BIELA_RUNTIMES"
+for library in $libraries; do
+    mkdir -p "$BIELA_RUNTIMES/${library%/*}"
+    cp "target/runtimes/$library" "$BIELA_RUNTIMES/$library"
+done
+solver=$(bash scripts/page.sh --current)
+if [ -n "$solver" ]; then
+    cp "$solver" "$BIELA_RUNTIMES/page.wasm"
+else
+    say "without the solver for pages: run \`make page\` first"
+fi
 if [ $# -eq 0 ]; then
     set -- linux64 win64 darwin64 aarch64-linux
 fi
+cross_setup "$@"
+say "building wheels for $*, 5 to 11 minutes for each processor on two processors"
 for platform in "$@"; do
     case $platform in
     linux64) wheel x86_64-unknown-linux-gnu --compatibility manylinux2014 ;;
@@ -35,7 +46,7 @@ for platform in "$@"; do
         wheel x86_64-apple-darwin
         wheel aarch64-apple-darwin
         ;;
-    *) fail "no wheel for $platform" "Name linux64, win64, darwin64 or aarch64-linux." ;;
+    *) fail "no wheel for $platform alone" "The wheels of darwin64 are for both processors." ;;
     esac
 done
 ls -l target/wheels
