@@ -27,8 +27,9 @@ impl Scene {
     /// Ways and slots are as long as the motion needs, and points of interest leave traces along
     /// it. The motion follows the prescribed motions until the file's stop time. If nothing is
     /// prescribed, the first driver of an angle turns: as many turns, up to eight, as bring the
-    /// mechanism back, or one turn, or as far both ways as it gets or its limits permit. Other
-    /// drivers keep their values. `traces` false leaves the traces out.
+    /// mechanism back, or one turn, or as far both ways as it gets or its limits permit; without an
+    /// angle, and with points of interest, the first driver moves between its limits. Other drivers
+    /// keep their values. `traces` false leaves the traces out.
     #[must_use]
     pub fn new(solver: &mut Solver, traces: bool) -> Self {
         let motion = sweep(solver);

@@ -67,6 +67,12 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
         back.reverse();
         back.append(&mut poses);
         poses = back;
+    } else if let Some(driver) = usual_driver(&mechanism)
+        && !mechanism.outputs.markers.is_empty()
+    {
+        // For the paths of points alone: ways as long as a cylinder could go would be long. A length
+        // without a limit has no whole range.
+        poses = follow_up_to(solver, driver, [None; 2], 0.0);
     }
     solver.restore(&home);
     poses
@@ -79,6 +85,16 @@ pub(super) fn follow(
     solver: &mut Solver,
     driver: DriverId,
     bounds: [Option<f64>; 2],
+) -> Vec<Vec<f64>> {
+    follow_up_to(solver, driver, bounds, 1.0)
+}
+
+/// As [`follow`], where a length without a limit changes by these sizes of the mechanism.
+fn follow_up_to(
+    solver: &mut Solver,
+    driver: DriverId,
+    bounds: [Option<f64>; 2],
+    sizes: f64,
 ) -> Vec<Vec<f64>> {
     let [steps, turns] = resolution(solver.mechanism());
     let settings = RangeSettings {
@@ -93,7 +109,7 @@ pub(super) fn follow(
     let kind = solver.mechanism().drivers[driver.index()].coordinate.kind;
     let shown = |end: &End| match *end {
         End::NotFound { .. } if kind.is_angle() => Some(start + TAU),
-        End::NotFound { value } => Some(start + (value - start) / SEARCHED),
+        End::NotFound { value } => Some(start + sizes * (value - start) / SEARCHED),
         _ => None,
     };
     // One turn upwards shows both ways of an angle without limits.

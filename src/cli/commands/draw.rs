@@ -26,8 +26,8 @@ use crate::mechanism::Mechanism;
 /// (`[outputs] markers`) with their paths. The paths cover the prescribed motions until the file's
 /// stop time. If no motion is prescribed, they cover the turns, at most eight, after which the
 /// first driver that is an angle brings the mechanism back, or the part of one turn both ways that
-/// it can reach and its `min` and `max` permit. With --driver, --from or --to they cover the range
-/// of one driver.
+/// it can reach and its `min` and `max` permit; without an angle, the first driver between its limits.
+/// With --driver, --from or --to they cover the range of one driver.
 ///
 /// A DXF is in millimetres: bodies on layers of their names, pins as circles, paths, and the
 /// contours of cams and curves as arcs within 0.001 mm.

@@ -35,13 +35,12 @@ pub(in crate::drawing) fn compose(
         link::compose(&mut composer, BodyId(body));
     }
     fixture::compose(&mut composer);
-    let frame = trace::frame(&composer);
     for marker in &mechanism.outputs.markers {
         let name = point_name(mechanism, *marker);
         let at = composer.anchor(*marker);
         composer.symbols.push(InterestPoint { name, at }.into());
         if traces {
-            trace::compose(&mut composer, at, frame);
+            trace::compose(&mut composer, at);
         }
     }
     composer.symbols

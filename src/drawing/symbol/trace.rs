@@ -18,23 +18,8 @@ const NEAR: f64 = 2e-3;
 const FAR_ALONG: f64 = 6.0;
 /// Least number of consecutive points that make a way back.
 const WAY_BACK: usize = 6;
-/// Room for open paths around a mechanism, as a part of its size.
-const ROOM: f64 = 0.25;
-
-/// Returns the rectangle around the mechanism, with some room for open paths \[m\].
-pub(super) fn frame(composer: &Composer) -> Bounds {
-    let mut bounds = bounds(&composer.symbols, composer.q);
-    composer.markers().for_each(|(_, point)| bounds.add(point));
-    let room = Point::repeat(ROOM * (bounds.high - bounds.low).max());
-    Bounds {
-        low: bounds.low - room,
-        high: bounds.high + room,
-    }
-}
-
-/// Composes the path of a point, unless the point is at rest. An open path is cut off far outside
-/// the mechanism, which it would make too small to see.
-pub(super) fn compose(composer: &mut Composer, at: Anchor, Bounds { low, high }: Bounds) {
+/// Composes the path of a point along the whole motion, unless the point is at rest.
+pub(super) fn compose(composer: &mut Composer, at: Anchor) {
     let motion = composer.motion.iter();
     let path: Vec<Point> = motion.map(|q| at.placed(q).point).collect();
     let largest = |points: &mut dyn Iterator<Item = f64>| points.fold(0.0, f64::max);
@@ -43,13 +28,8 @@ pub(super) fn compose(composer: &mut Composer, at: Anchor, Bounds { low, high }:
         return;
     }
     let near = NEAR * extent;
-    let closed = (path[path.len() - 1] - path[0]).norm() < near;
-    let seen = |p: &Point| closed || (low.inf(p) == low && high.sup(p) == high);
-    let pieces = without_ways_back(&path, near)
-        .into_iter()
-        .flat_map(|piece| piece.split(|p| !seen(p)))
-        .filter(|piece| piece.len() > 1);
-    let traces = pieces.map(|piece| Trace {
+    let pieces = without_ways_back(&path, near);
+    let traces = pieces.into_iter().map(|piece| Trace {
         body: at.body,
         points: piece.iter().map(|&p| p.into()).collect(),
     });

@@ -4,7 +4,7 @@ use biela::drawing::{Scene, Symbol};
 use biela::mechanism::BodyId;
 
 use crate::common::{assembled, shipped};
-use crate::drawing::scenes::{near, scene};
+use crate::drawing::scenes::{near, scene, scene_of};
 
 #[test]
 fn trace_is_the_path_of_its_point() {
@@ -83,4 +83,64 @@ fn trace_continues_until_the_mechanism_is_back() {
     };
     let drawn: f64 = pieces("planetary_gear").iter().map(length).sum();
     assert!((drawn / (16.0 * 0.024) - 1.0).abs() < 0.03, "{drawn}");
+}
+
+/// Returns the ends and the length of the one path in a scene.
+fn only_path(text: &str) -> ([[f64; 2]; 2], f64) {
+    let scene = scene_of(text);
+    let mut traces = scene.symbols.iter().filter_map(|symbol| match symbol {
+        Symbol::Trace(trace) => Some(&trace.points),
+        _ => None,
+    });
+    let (Some(points), None) = (traces.next(), traces.next()) else {
+        panic!("there is one path")
+    };
+    let steps = points
+        .windows(2)
+        .map(|p| f64::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]));
+    ([points[0], points[points.len() - 1]], steps.sum())
+}
+
+const ARM: &str = r#"format = 1
+name = "arm"
+[ground.markers]
+O = [0, 0]
+G = [0.4, 0]
+[bodies.arm]
+markers = { O = [0, 0], A = [0.3, 0], P = [0.5, 0] }
+estimate = [0, 0, 0.3]
+[joints]
+O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+[outputs]
+markers = ["arm.P"]
+"#;
+
+// Flat at its start, the arm leaves the rectangle around itself.
+#[test]
+fn a_path_covers_the_whole_range_of_an_angle() {
+    let driver = r#"[drivers]
+angle = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0, min = 0, max = "85*deg" }
+"#;
+    let ([first, last], length) = only_path(&format!("{ARM}{driver}"));
+    let end = 85.0_f64.to_radians();
+    assert!(near(first[0], 0.5) && near(first[1], 0.0), "{first:?}");
+    assert!(
+        near(last[0], 0.5 * end.cos()) && near(last[1], 0.5 * end.sin()),
+        "{last:?}"
+    );
+    assert!((length / (0.5 * end) - 1.0).abs() < 1e-4, "{length}");
+}
+
+#[test]
+fn a_path_covers_the_whole_range_of_a_length() {
+    let driver = r#"[drivers]
+cylinder = { coordinate = "distance", markers = ["ground.G", "arm.A"], start = 0.2, min = 0.15, max = 0.6 }
+"#;
+    let ([first, last], _) = only_path(&format!("{ARM}{driver}"));
+    for (end, length) in [(first, 0.15), (last, 0.6_f64)] {
+        // Law of cosines: the angle between the arm and the base of the cylinder.
+        let cos = (0.16 + 0.09 - length * length) / (2.0 * 0.4 * 0.3);
+        assert!(near(end[0], 0.5 * cos), "{end:?} {cos}");
+        assert!(near(end[1], 0.5 * (1.0 - cos * cos).sqrt()), "{end:?}");
+    }
 }
