@@ -2,6 +2,7 @@
 
 use super::UriError;
 use super::log::Category;
+use super::package::LIBRARY_MARK;
 use super::state::{Interface, State, Version};
 use super::status::Status;
 use crate::mechanism::shown;
@@ -218,7 +219,7 @@ pub enum Error {
     /// The resources do not belong to the model description.
     #[error(
         "the GUID `{given}` is not the GUID `{actual}` of the model in the FMU's resources: the \
-         model description and the resources do not belong together"
+         model description and the resources do not belong together {LIBRARY_MARK}"
     )]
     Guid {
         /// GUID from the host.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::io::{self, Seek, Write};
 
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 use super::model_description::{Document, ModelDescription, terminals};
 use super::state::Version;
@@ -86,6 +86,10 @@ impl Platform {
     }
 }
 
+/// Text in each runtime library that tells its version: a part of a message, which no linker leaves
+/// out.
+pub(super) const LIBRARY_MARK: &str = concat!("(biela runtime ", env!("CARGO_PKG_VERSION"), ")");
+
 /// A runtime library: this crate built as a shared library.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RuntimeLibrary {
@@ -93,6 +97,15 @@ pub struct RuntimeLibrary {
     pub platform: Platform,
     /// Content of the file.
     pub content: Cow<'static, [u8]>,
+}
+
+impl RuntimeLibrary {
+    /// Returns whether the library is of this version of biela.
+    #[must_use]
+    pub fn is_current(&self) -> bool {
+        let mark = LIBRARY_MARK.as_bytes();
+        self.content.windows(mark.len()).any(|text| text == mark)
+    }
 }
 
 /// Writes an FMU: model description, terminals and icon if there are any, documents, runtime libraries
@@ -115,6 +128,8 @@ pub fn write<Q>(
     let text = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
+        // Otherwise each entry names the system on which the FMU is written.
+        .system(System::Unix)
         .unix_permissions(0o644);
     let binary = text.unix_permissions(0o755);
 

@@ -25,7 +25,7 @@ pub enum UriError {
         /// The drive.
         drive: String,
     },
-    /// The URI names another machine.
+    /// The URI names another machine, on a system whose paths do not.
     #[error("the resource location `{uri}` is on another host, `{host}`")]
     Host {
         /// The URI.
@@ -41,8 +41,9 @@ pub enum UriError {
     },
 }
 
-/// Returns the folder of a resource location: `file:///x`, `file:/x` or `file://localhost/x`,
-/// percent-encoded, with or without a trailing slash (FMI 2.0, 2.1.5, and RFC 8089).
+/// Returns the folder of a resource location: `file:///x`, `file:/x` or `file://localhost/x`, on
+/// Windows `file://server/share/x` as well, percent-encoded, with or without a trailing slash (FMI
+/// 2.0, 2.1.5, and RFC 8089).
 ///
 /// Accepts a plain absolute path as well, which some hosts pass.
 ///
@@ -70,6 +71,12 @@ pub fn resource_path(uri: &str) -> Result<PathBuf, UriError> {
                 });
             }
             if !(host.is_empty() || host.eq_ignore_ascii_case("localhost")) {
+                // Windows has paths on other machines.
+                if cfg!(windows) && !path.is_empty() {
+                    return share(host, path).ok_or_else(|| UriError::Encoding {
+                        uri: uri.to_owned(),
+                    });
+                }
                 return Err(UriError::Host {
                     uri: uri.to_owned(),
                     host: host.to_owned(),
@@ -95,6 +102,12 @@ fn plain_path(path: &str) -> Result<PathBuf, UriError> {
             uri: path.to_owned(),
         })
     }
+}
+
+/// Returns the path `\\server\share\…` of a percent-encoded path on a host (RFC 8089, E.3.1).
+fn share(host: &str, path: &str) -> Option<PathBuf> {
+    let path = percent_decode_str(path).decode_utf8().ok()?;
+    Some(format!("//{host}{path}").replace('/', "\\").into())
 }
 
 #[cfg(unix)]
@@ -141,6 +154,15 @@ mod tests {
     }
 
     #[test]
+    fn a_share_of_windows_is_a_path() {
+        assert_eq!(
+            share("server", "/share/a%20b/%C3%BC/resources"),
+            Some(PathBuf::from(r"\\server\share\a b\ü\resources"))
+        );
+        assert_eq!(share("server", "/share/%FF"), None);
+    }
+
+    #[test]
     fn others_are_refused() {
         assert_eq!(resource_path(""), Err(UriError::Empty));
         assert_eq!(resource_path("file://"), Err(UriError::Empty));
@@ -155,9 +177,11 @@ mod tests {
             resource_path("file://C:/resources"),
             Err(UriError::Drive { drive, .. }) if drive == "C:"
         ));
-        assert!(matches!(
-            resource_path("file://server/share/x"),
-            Err(UriError::Host { host, .. }) if host == "server"
-        ));
+        let share = resource_path("file://server/share/x");
+        if cfg!(windows) {
+            assert_eq!(share, Ok(PathBuf::from(r"\\server\share\x")));
+        } else {
+            assert!(matches!(share, Err(UriError::Host { host, .. }) if host == "server"));
+        }
     }
 }

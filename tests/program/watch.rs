@@ -108,6 +108,10 @@ fn the_page_follows_the_file() {
     // The terminal is told once of each.
     assert!(watched.get("/").contains("cannot read"));
     let told = watched.told();
+    assert!(
+        told.starts_with("note: no solver for pages was found"),
+        "{told}"
+    );
     for error in ["watched.toml:20:45", "error: cannot read "] {
         assert_eq!(told.matches(error).count(), 1, "{told}");
     }

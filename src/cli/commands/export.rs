@@ -11,7 +11,7 @@ use crate::cli::error::Error;
 use crate::cli::form::Form;
 use crate::cli::input::{Input, warn_of_misfits};
 use crate::cli::input_files::InputFiles;
-use crate::cli::message::tell;
+use crate::cli::message::{Message, tell};
 use crate::cli::output::write;
 use crate::cli::page_solver;
 use crate::cli::runtime::{self, FoundLibrary};
@@ -100,7 +100,18 @@ impl Export {
         for library in found.iter().filter_map(|found| found.path.as_deref()) {
             files.add("a runtime library", library);
         }
-        let platforms = packed(&found, self.fmi, !self.platforms.is_empty());
+        for library in found.iter().map(|found| &found.library) {
+            if !library.is_current() {
+                let name = library.platform.name;
+                let version = env!("CARGO_PKG_VERSION");
+                let warning = format!(
+                    "the library for {name} is of another version of biela than {version}: build \
+                     it anew by `make runtimes`, and install it by `make install`"
+                );
+                Message::Warning(warning).show();
+            }
+        }
+        let mut packed = packed(&found, self.fmi, !self.platforms.is_empty());
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
@@ -108,6 +119,9 @@ impl Export {
             true => None,
             false => page_solver::find(None)?,
         };
+        if page.is_none() && !self.no_page {
+            packed += "; no page to move by hand, for which `make page` builds the solver";
+        }
         let form = Form::new(self.fmi, self.terminals);
         let mut content = pack(&input, &solver, form, &libraries, page.as_deref())?;
         if self.ssp {
@@ -122,7 +136,7 @@ impl Export {
         } else {
             path.to_string_lossy()
         };
-        tell(format_args!("wrote {name} ({platforms})"));
+        tell(format_args!("wrote {name} ({packed})"));
         Ok(())
     }
 }

@@ -66,6 +66,11 @@ impl Watch {
             false => None,
         };
         let server = Server::new(self.port)?;
+        if solver.is_none() && self.conditions.is_empty() {
+            let note = "no solver for pages was found, so the page plays a motion and cannot be \
+                        moved by hand: run `make page` and `make install`";
+            Message::Note(note.to_owned()).show();
+        }
         // With stdout closed the browser may have the address already.
         let _ = print(&format!("{}\n", server.address()));
         let mut view = View::new(self, solver);

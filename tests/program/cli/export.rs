@@ -127,6 +127,52 @@ fn export_is_reproducible_and_dated_only_on_demand() {
         .code(2);
 }
 
+// A build for tests has no solver for pages.
+#[test]
+fn export_says_what_it_leaves_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let fmu = folder.path().join("tlv.fmu");
+    let fmu = fmu.to_str().unwrap();
+    let told = |options: &[&str]| {
+        stderr(&biela(&[&["export", "mechanisms/tlv.toml", "-o", fmu], options].concat()).success())
+    };
+    let message = told(&[]);
+    let end = "; no page to move by hand, for which `make page` builds the solver)\n";
+    assert!(message.ends_with(end), "{message}");
+    let message = told(&["--no-page"]);
+    assert!(!message.contains("page"), "{message}");
+    // The library of another version.
+    let libraries = folder.path().join("libraries");
+    std::fs::create_dir_all(libraries.join("win64")).unwrap();
+    let library = libraries.join("win64/biela.dll");
+    let export = |content: &str| {
+        std::fs::write(&library, format!("MZ {content}")).unwrap();
+        told(&["--runtime", libraries.to_str().unwrap()])
+    };
+    let warning = "warning: the library for win64 is of another version of biela";
+    assert!(export("(biela runtime 0.0.1)").starts_with(warning));
+    let own = concat!("(biela runtime ", env!("CARGO_PKG_VERSION"), ")");
+    assert!(!export(own).contains("warning"));
+}
+
+// Each entry of an archive names the system that made it, which is to be the same everywhere.
+#[test]
+fn the_archive_does_not_name_its_system() {
+    /// Signature of an entry in the directory of an archive; two bytes of version and system follow.
+    const ENTRY: &[u8] = b"PK\x01\x02";
+    const UNIX: u8 = 3;
+    let folder = tempfile::tempdir().unwrap();
+    let fmu = folder.path().join("tlv.fmu");
+    biela(&["export", "mechanisms/tlv.toml", "-o", fmu.to_str().unwrap()]).success();
+    let bytes = std::fs::read(fmu).unwrap();
+    let entries = bytes.windows(6).filter(|window| window.starts_with(ENTRY));
+    let systems: Vec<u8> = entries.map(|window| window[5]).collect();
+    assert!(
+        systems.len() > 3 && systems.iter().all(|system| *system == UNIX),
+        "{systems:?}"
+    );
+}
+
 #[test]
 fn only_shared_libraries_of_their_platform_are_packed() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,7 +185,15 @@ fn only_shared_libraries_of_their_platform_are_packed() {
     let [fmu, libraries] = [fmu.as_path(), folder.path()].map(|path| path.to_str().unwrap());
     let export = || {
         let file = "mechanisms/tlv.toml";
-        biela(&["export", file, "-o", fmu, "--runtime", libraries])
+        biela(&[
+            "export",
+            file,
+            "-o",
+            fmu,
+            "--no-page",
+            "--runtime",
+            libraries,
+        ])
     };
     // First bytes of files, by the standards of their formats.
     let kinds = [
@@ -197,7 +251,13 @@ fn platforms_are_listed_and_narrow_the_export() {
         assert!(line.starts_with(start) && line.contains(end), "{line}");
     }
     let export = |platforms: &str| {
-        let options = ["--runtime", libraries, "--platforms", platforms];
+        let options = [
+            "--no-page",
+            "--runtime",
+            libraries,
+            "--platforms",
+            platforms,
+        ];
         biela(&[&["export", "mechanisms/tlv.toml", "-o", fmu][..], &options].concat())
     };
     let message = stderr(&export("win64").success());
