@@ -13,6 +13,19 @@ export function add(parent, name, properties = {}, ...children) {
   return parent.appendChild(element);
 }
 
+/** Shows a text whose names stand in back quotes, and whose numbers may end in zeros. */
+export function say(element, text) {
+  const plain = text.replace(/\d+\.\d*0(?!\d)/g, (number) => String(Number(number)));
+  element.replaceChildren();
+  plain.split("`").forEach((part, index) => {
+    if (index % 2) {
+      add(element, "code", { textContent: part });
+    } else {
+      element.append(part);
+    }
+  });
+}
+
 /**
  * Offers in a list what can move: time, and the drivers that are inputs where no freedoms move by
  * themselves. A choice made before stays.
@@ -35,11 +48,12 @@ export function offerMoves(list, page) {
 
 /**
  * A row with a slider and a field for one value. `item` has name, description, unit and factor;
- * `low` and `high` bound the slider [SI]; `turns` lets it go round. `change(value, done)` is called
+ * `low` and `high` bound the slider [SI], and `low_end` and `high_end` say what ends it there;
+ * `turns` lets it go round. `change(value, done)` is called
  * while the value changes, and with `done` at the end.
  */
 export class Row {
-  constructor(parent, item, { low, high, turns = false }, change) {
+  constructor(parent, item, { low, high, low_end, high_end, turns = false }, change) {
     this.item = item;
     this.turns = turns;
     const row = add(parent, "div", { className: "row", title: item.description });
@@ -49,7 +63,8 @@ export class Row {
     this.slider = add(row, "input", { type: "range", step: "any" });
     this.slider.setAttribute("aria-label", `${item.name}, slider`);
     this.field = add(row, "input", { type: "number", step: "any", id });
-    this.bound(low, high);
+    this.ends = add(row, "small", { className: "ends" });
+    this.bound({ low, high, low_end, high_end });
     this.slider.addEventListener("input", () => change(this.unwrapped(Number(this.slider.value)), false));
     // The slider shows the value that was reached.
     this.slider.addEventListener("change", () => change(this.value, true));
@@ -62,10 +77,15 @@ export class Row {
     });
   }
 
-  bound(low, high) {
+  /** Sets the ends of the slider, with what ends it there. */
+  bound({ low, high, low_end, high_end }) {
     [this.low, this.high] = [low, high];
     this.slider.min = low;
     this.slider.max = high;
+    const { factor, unit } = this.item;
+    const ends = [[low, low_end], [high, high_end]].filter(([, end]) => end);
+    const texts = ends.map(([value, end]) => `${end} at ${shown(value * factor, 5)} ${unit}`);
+    say(this.ends, texts.join(", "));
   }
 
   // A crank that has turned further stays in its turn.

@@ -1,13 +1,15 @@
 // A mechanism in a page: connects the solver with picture, controls, chart and files.
 
 import { Chart } from "./chart.js";
-import { Row, add, shown } from "./controls.js";
+import { Row, add, say, shown } from "./controls.js";
 import { connectSaving } from "./files.js";
 import { giveHand } from "./hand.js";
 import { Picture } from "./picture.js";
 import { Play } from "./play.js";
 import { Broken, Solver, unpack } from "./solver.js";
 
+// Units of the arrows.
+const ARROW_UNITS = { velocity: "m/s", acceleration: "m/s²", force: "N" };
 const LENGTHS_AND_ANGLES = ["m", "cm", "mm", "inch", "rad", "deg"];
 
 class Live {
@@ -70,20 +72,24 @@ class Live {
     this.ask({ do: "keep" });
   }
 
-  open(file) {
-    const answer = this.ask({ do: "open", ...file });
+  /** Opens a file; `kept`, so that undo returns to the one before. Problems stand in `place`. */
+  open(file, place = ".problems", kept = false) {
+    const answer = this.ask({ do: "open", kept, ...file });
     if (answer?.problems) {
-      this.find(".problems").textContent = answer.problems.join("\n\n");
-      this.find(".problems").hidden = false;
+      this.find(place).textContent = answer.problems.join("\n\n");
+      this.find(place).hidden = false;
       return false;
     }
-    if (!answer?.page) {
-      return false;
+    return answer?.page ? this.opened(file, answer.page) : false;
+  }
+
+  opened(file, page) {
+    for (const place of [".problems", ".file-problems"]) {
+      this.find(place).hidden = true;
     }
-    this.find(".problems").hidden = true;
     this.file = file;
     this.find(".text").value = file.text;
-    this.show(answer.page, this.ask({ do: "picture" }), false);
+    this.show(page, this.ask({ do: "picture" }), false);
     this.tellOutcome({ outcome: "reached" });
     for (const warning of this.page.warnings) {
       this.tell(warning);
@@ -139,11 +145,34 @@ class Live {
       // Lengths below a picometre and such angles are rounding.
       const isRounding = Math.abs(at) < 1e-12 && LENGTHS_AND_ANGLES.includes(unit);
       const value = isRounding ? 0 : shown(at * factor, 6);
-      output.textContent = `${value === null ? "–" : value} ${unit}`;
+      output.textContent = value === null ? "no finite value" : `${value} ${unit}`;
     }
-    this.find(".clock").textContent = page.uses_time ? `${frame[0].toFixed(3)} s` : "";
+    this.tellRates();
+    for (const [kind, unit] of Object.entries(ARROW_UNITS)) {
+      const most = this.picture.most[kind];
+      this.find(`.scale.${kind}`).textContent = most > 1e-9 ? `(longest arrow ${shown(most, 3)} ${unit})` : "";
+    }
+    const time = page.uses_time ? `${frame[0].toFixed(3)} s` : "";
+    this.find(".clock").textContent = [time, this.play.slowness].filter(Boolean).join(", ");
     this.find(".time").value = frame[0];
     this.chart.move();
+  }
+
+  /** Tells the speeds at which rates and forces are shown. */
+  tellRates() {
+    const { frame, places, page } = this;
+    const inputs = page.is_free ? [] : page.drivers.flatMap((driver, index) => (driver.is_input ? [[driver, index]] : []));
+    const rates = inputs.map(([driver, index]) => {
+      const [velocity, acceleration] = frame.slice(places.drivers + 3 * index + 1);
+      const part = (value, kind) => `${shown(value * driver[`${kind}_factor`], 4)} ${driver[`${kind}_unit`]}`;
+      return `\`${driver.name}\` at ${part(velocity, "velocity")}${acceleration ? `, ${part(acceleration, "acceleration")}` : ""}`;
+    });
+    const end = frame[places.has_rates] ? "" : " At this dead point they have no finite values.";
+    const text = rates.length ? `Rates and forces are those of ${rates.join("; ")} (see Speeds and loads).${end}` : "";
+    if (text !== this.toldRates) {
+      this.toldRates = text;
+      say(this.find(".at-rates"), text);
+    }
   }
 
   /** Measures names that have another size on the screen, and draws them. */
@@ -275,7 +304,7 @@ class Live {
       this.page = answer.page;
       this.places = answer.page.places;
       this.picture.show(answer.picture, keep);
-      this.drivers.forEach((row, index) => row?.bound(this.page.ranges[index].low, this.page.ranges[index].high));
+      this.drivers.forEach((row, index) => row?.bound(this.page.ranges[index]));
       this.draw();
     }
   }
@@ -292,14 +321,14 @@ class Live {
     this.picture.mark(at ?? null);
     const line = this.find(".message");
     if (outcome !== "reached" || line.textContent !== "") {
-      line.textContent = message ?? "";
+      say(line, message ?? "");
       this.root.classList.toggle("stopped", outcome !== "reached");
     }
     this.find(".anew").hidden = !assembles;
   }
 
   tell(text) {
-    this.find(".message").textContent = text;
+    say(this.find(".message"), text);
   }
 
   // -- controls ------------------------------------------------------------------------------
@@ -309,7 +338,10 @@ class Live {
     const click = (selector, act) => find(selector).addEventListener("click", act);
     const step = (word) => () => {
       this.play.stop();
-      if (this.ask({ do: word })?.done) {
+      const answer = this.ask({ do: word });
+      if (answer?.page) {
+        this.opened({ ...this.file, ...answer.file }, answer.page);
+      } else if (answer?.done) {
         this.redraw(false);
         this.makeRateRows();
         this.tellOutcome({ outcome: "reached" });
@@ -322,7 +354,7 @@ class Live {
     }
     click(".restart", () => this.restart());
     click(".find-modes", () => this.findModes());
-    click(".apply", () => this.open({ ...this.file, text: find(".text").value }));
+    click(".apply", () => this.open({ ...this.file, text: find(".text").value }, ".file-problems", true));
     click(".anew", () => {
       const request = this.refused;
       if (request && this.move({ ...request, anew: true })) {

@@ -2,6 +2,10 @@
 
 import { offerMoves } from "./controls.js";
 
+// Largest angle by which a driver turns per second [rad]: faster ones look as if they stood, or ran
+// backwards.
+const FASTEST = 4 * Math.PI;
+
 export class Play {
   /** `live` solves and draws; `find` returns an element of the page. */
   constructor(live, find) {
@@ -12,11 +16,14 @@ export class Play {
     this.what = find(".moved");
     this.playing = false;
     this.direction = 1;
+    this.slowdown = 1;
+    this.speed.addEventListener("change", () => (this.slowdown = 1));
     this.button.addEventListener("click", () => this.toggle());
   }
 
   /** Offers what can move: time, and the drivers that are inputs. */
   offer(page) {
+    this.slowdown = 1;
     offerMoves(this.what, page);
     this.button.disabled = this.what.options.length === 0;
     this.swing.parentElement.hidden = page.is_free;
@@ -55,10 +62,34 @@ export class Play {
     }
     if (this.before !== null) {
       // A page in the background gets no pictures for a while.
-      this.advance(Math.min(0.1, (now - this.before) / 1000) * Number(this.speed.value));
+      this.advance(Math.min(0.1, (now - this.before) / 1000) * this.pace);
     }
     this.before = now;
     requestAnimationFrame((next) => this.tick(next));
+  }
+
+  /** Returns the speed over that of the clock: the one chosen, less where drivers turn too fast to see. */
+  get pace() {
+    const { frame, places, page } = this.live;
+    const chosen = Number(this.speed.value);
+    const played = this.what.value === "time" ? page.drivers.keys() : [Number(this.what.value)];
+    const turning = [...played].map((driver) =>
+      page.drivers[driver].is_angle ? Math.abs(frame[places.drivers + 3 * driver + 1]) : 0,
+    );
+    const fastest = chosen * Math.max(0, ...turning);
+    while (fastest * this.slowdown > FASTEST && this.slowdown > 1e-6) {
+      // 1/2, 1/5, 1/10.
+      this.slowdown *= String(this.slowdown).match(/[1-9]/)[0] === "5" ? 0.4 : 0.5;
+      this.slowdown = Number(this.slowdown.toPrecision(1));
+    }
+    return chosen * this.slowdown;
+  }
+
+  /** Returns a text about a motion that is shown slower than chosen, empty for none. */
+  get slowness() {
+    const total = this.slowdown * Number(this.speed.value);
+    const told = total < 1 ? `1/${Math.round(1 / total)}` : `×${total}`;
+    return this.slowdown < 1 ? `slow motion ${told}` : "";
   }
 
   /** Moves on by a time [s]. */

@@ -19,12 +19,13 @@ const SHARED: &str = include_str!("../../page/scripts/shared.js");
 /// Style of the part.
 pub(super) const STYLE: &str = include_str!("../../page/scripts/live.css");
 /// The scripts; each uses only those before it.
-const SCRIPTS: [&str; 8] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("../../page/scripts/solver.js"),
     include_str!("../../page/scripts/picture.js"),
     include_str!("../../page/scripts/hand.js"),
     include_str!("../../page/scripts/controls.js"),
     include_str!("../../page/scripts/play.js"),
+    include_str!("../../page/scripts/axis.js"),
     include_str!("../../page/scripts/chart.js"),
     include_str!("../../page/scripts/files.js"),
     include_str!("../../page/scripts/live.js"),

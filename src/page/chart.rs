@@ -18,15 +18,33 @@ pub enum Over {
 
 impl Session {
     /// Returns values of variables, by their places in the description, at `samples` points along
-    /// time or a driver: `x`, and a list `y` per variable, with `null` where there is no value. The
-    /// pose is unchanged. The time of a free motion begins where it was let go, or here if that is
+    /// time or a driver: `x`, a list `y` per variable, with `null` where there is no value, and the
+    /// `events` of a free motion, each with its time `x` and a `text`. The pose is unchanged. The time of a free motion begins where it was let go, or here if that is
     /// more than the simulation's time ago.
     pub fn chart(&mut self, over: Over, variables: &[usize], samples: usize) -> Value {
-        let chart = |session: &mut Self| session.chart_apart(over, variables, samples);
+        let chart = |session: &mut Self| {
+            if let Some(freedoms) = &mut session.freedoms {
+                freedoms.events = Some(Vec::new());
+            }
+            let mut chart = session.chart_apart(over, variables, samples);
+            chart["events"] = session.events().into();
+            chart
+        };
         match over {
             Over::Time => self.apart(chart),
             Over::Driver(_) => self.apart_by_hand(chart),
         }
+    }
+
+    /// Takes the events since the chart was begun.
+    fn events(&mut self) -> Vec<Value> {
+        let freedoms = self.freedoms.as_mut();
+        let events = freedoms.and_then(|freedoms| freedoms.events.take());
+        let told = events
+            .unwrap_or_default()
+            .into_iter()
+            .map(|event| json!({ "x": event.time, "text": event.describe(&self.mechanism) }));
+        told.collect()
     }
 
     fn chart_apart(&mut self, over: Over, variables: &[usize], samples: usize) -> Value {

@@ -94,8 +94,18 @@ impl Session {
             .collect();
         // Prescribed motions have none.
         let range = |range: &Option<DriverRange>| {
-            let DriverRange { ends, turns } = range.as_ref()?;
-            Some(json!({ "low": ends[0], "high": ends[1], "turns": turns }))
+            let DriverRange {
+                ends,
+                turns,
+                causes,
+            } = range.as_ref()?;
+            Some(json!({
+                "low": ends[0],
+                "high": ends[1],
+                "turns": turns,
+                "low_end": causes[0],
+                "high_end": causes[1],
+            }))
         };
         let ranges: Vec<Option<Value>> = self.ranges.iter().map(range).collect();
         json!({

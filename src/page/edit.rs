@@ -5,6 +5,9 @@ use toml_edit::{Array, DocumentMut, Item, TableLike, TomlError, Value};
 use crate::kinematics::Pose;
 use crate::mechanism::{DriverId, DriverSource, Mechanism, constant, rounded};
 
+/// Digits of an estimate: the assembly starts from it, and ends at the same pose.
+const ESTIMATE_DIGITS: usize = 9;
+
 /// A text that is no mechanism file.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum EditError {
@@ -73,7 +76,14 @@ pub fn edit(
         for (body, q) in mechanism.bodies.iter().zip(pose.q.chunks_exact(3)) {
             let bodies = table(root.get_mut("bodies"))?;
             let body = table(bodies.get_mut(&body.name))?;
-            let estimate = q.iter().copied().collect::<Array>();
+            let old = body.get("estimate").and_then(Item::as_array).cloned();
+            let values = q.iter().enumerate().map(|(k, value)| {
+                let old = old.as_ref().and_then(|old| old.get(k));
+                let value = rounded(*value, ESTIMATE_DIGITS);
+                old.and_then(|old| in_unit_of(old, value, ESTIMATE_DIGITS))
+                    .unwrap_or_else(|| value.into())
+            });
+            let estimate = values.collect::<Array>();
             set(body, "estimate", Value::Array(estimate));
         }
     }
@@ -107,7 +117,9 @@ fn table(item: Option<&mut Item>) -> Result<&mut dyn TableLike, EditError> {
 /// Sets a value of a table; a comment behind the old one stays, and its unit.
 fn set(table: &mut dyn TableLike, key: &str, value: Value) {
     if let Some(Item::Value(old)) = table.get_mut(key) {
-        let in_unit = value.as_float().and_then(|number| in_unit_of(old, number));
+        let in_unit = value
+            .as_float()
+            .and_then(|number| in_unit_of(old, number, 17));
         let mut value = in_unit.unwrap_or(value);
         *value.decor_mut() = old.decor().clone();
         *old = value;
@@ -117,8 +129,8 @@ fn set(table: &mut dyn TableLike, key: &str, value: Value) {
 }
 
 /// Returns a number in the unit of an old value, if that has one: `"50*mm"` after `"40*mm"`. It is
-/// rounded to twelve digits where these are enough.
-fn in_unit_of(old: &Value, value: f64) -> Option<Value> {
+/// rounded to twelve digits where these are enough, otherwise to `digits`.
+fn in_unit_of(old: &Value, value: f64, digits: usize) -> Option<Value> {
     /// Units in the last place of the value by which product and quotient can miss it.
     const NEAR: f64 = 4.0 * f64::EPSILON;
     let (number, unit) = old.as_str()?.split_once('*')?;
@@ -127,7 +139,9 @@ fn in_unit_of(old: &Value, value: f64) -> Option<Value> {
     let number = value / factor;
     let round = rounded(number, 12);
     let is_near = |number: &f64| (number * factor - value).abs() <= NEAR * value.abs();
-    let shown = Some(round).filter(is_near).unwrap_or(number);
+    let shown = Some(round)
+        .filter(is_near)
+        .unwrap_or_else(|| rounded(number, digits));
     Some(format!("{shown}*{}", unit.trim()).into())
 }
 

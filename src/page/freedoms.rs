@@ -1,6 +1,6 @@
 //! The free motion of a session, and its states.
 
-use crate::dynamics::{Error, FreeMotion, FreeState, Given};
+use crate::dynamics::{Error, Event, FreeMotion, FreeState, Given};
 use crate::kinematics::{Pose, Solution, Solver, SolverChoices};
 use crate::mechanism::{DriverId, Jet};
 
@@ -11,6 +11,8 @@ pub(super) struct Freedoms {
     fresh: FreeState,
     /// Whether the motion is at the solver's pose; otherwise it begins there.
     pub(super) is_released: bool,
+    /// The events of the motion, while a chart is computed.
+    pub(super) events: Option<Vec<Event>>,
 }
 
 impl Freedoms {
@@ -22,6 +24,7 @@ impl Freedoms {
             fresh: motion.state(),
             motion,
             is_released: false,
+            events: None,
         }))
     }
 
@@ -54,8 +57,11 @@ impl Freedoms {
         let parameters = solver.pose().parameters.clone();
         self.motion.jump(solver, &inputs, &parameters)?;
         let advanced = self.motion.advance(solver, solution, &inputs, time);
-        // A page shows the motion; its events are those of a run.
-        self.motion.events().for_each(drop);
+        let events = self.motion.events();
+        match &mut self.events {
+            Some(known) => known.extend(events),
+            None => events.for_each(drop),
+        }
         advanced
     }
 

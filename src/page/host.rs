@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::chart::Over;
+use super::files::Files;
 use super::outcome::Outcome;
 use super::session::Session;
 use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
@@ -11,7 +12,7 @@ use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 ///
 /// | `do` | further keys | answer |
 /// |---|---|---|
-/// | `open` | `name`, `text`, `files` (names with contents) | `page`, or `problems` |
+/// | `open` | `name`, `text`, `files` (names with contents), `kept` (undo returns) | `page`, or `problems` |
 /// | `picture` | | the parts of the moving picture |
 /// | `redraw` | `keep` (the scale) | `picture`, `page` |
 /// | `drive` | `driver`, `value` | an outcome |
@@ -23,10 +24,11 @@ use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 /// | `drag` | `body`, `grip`, `at` (in the picture) | an outcome |
 /// | `hold` | `body`, `grip`, `at` (in the picture) | an outcome |
 /// | `let_go` | | |
-/// | `keep`, `undo`, `redo`, `reset` | | `done` |
+/// | `keep`, `reset` | | `done` |
+/// | `undo`, `redo` | | `done`; of another file `page` and `file` |
 /// | `assemblies` | | `pictures`, `complete` |
 /// | `choose` | `index` | an outcome |
-/// | `chart` | `driver` (time without one), `variables`, `samples` | `x`, `y` |
+/// | `chart` | `driver` (time without one), `variables`, `samples` | `x`, `y`, `events` |
 /// | `diagram` | | `svg` |
 /// | `text` | `parameters` (without the pose) | `text` |
 ///
@@ -35,7 +37,7 @@ use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 /// `error`.
 #[derive(Default)]
 pub struct Host {
-    session: Option<Session>,
+    files: Files,
     frame: Vec<f64>,
 }
 
@@ -53,7 +55,7 @@ impl Host {
 
     /// Moves a driver and writes the frame; returns whether the value was reached.
     pub fn drive(&mut self, driver: usize, value: f64) -> bool {
-        let Some(session) = &mut self.session else {
+        let Some(session) = &mut self.files.now else {
             return false;
         };
         let reached = session.drive(DriverId(driver), value) == Outcome::Reached;
@@ -68,17 +70,21 @@ impl Host {
     }
 
     fn write_frame(&mut self) {
-        if let Some(session) = &mut self.session {
+        if let Some(session) = &mut self.files.now {
             session.write_frame(&mut self.frame);
         }
     }
 
     fn act(&mut self, request: &Value) -> Option<Value> {
         let word = request["do"].as_str()?;
-        if word == "open" {
-            return self.open(request);
+        match word {
+            "open" => return self.open(request),
+            "undo" => return Some(self.files.undo()),
+            "redo" => return Some(self.files.redo()),
+            "keep" | "reset" | "choose" => self.files.change(),
+            _ => {}
         }
-        let session = self.session.as_mut()?;
+        let session = self.files.now.as_mut()?;
         let number = |key: &str| request[key].as_f64();
         let index = |key: &str| usize::try_from(request[key].as_u64()?).ok();
         let pair = |key: &str| Some([request[key][0].as_f64()?, request[key][1].as_f64()?]);
@@ -133,8 +139,6 @@ impl Host {
                         session.keep();
                         json!({ "done": true })
                     }
-                    "undo" => json!({ "done": session.undo() }),
-                    "redo" => json!({ "done": session.redo() }),
                     "reset" => {
                         session.reset();
                         json!({ "done": true })
@@ -181,7 +185,8 @@ impl Host {
         Some(match Session::open(source) {
             Ok(session) => {
                 let page = session.description();
-                self.session = Some(session);
+                self.files
+                    .open(session, request["kept"].as_bool().unwrap_or(false));
                 json!({ "page": page })
             }
             // The mechanism that was open stays.

@@ -22,12 +22,14 @@
 //! | `chart` | variables over time or over a driver |
 //! | `frame` | the numbers of one picture |
 //! | `edit` | the mechanism's file with other values |
+//! | `files` | the files opened one after the other, for undo |
 //! | `host` | [`Host`]: requests in JSON |
 
 mod assemblies;
 mod chart;
 mod description;
 mod edit;
+mod files;
 mod frame;
 mod free;
 mod freedoms;

@@ -25,6 +25,8 @@ pub(super) struct DriverRange {
     pub(super) ends: [f64; 2],
     /// Whether the driver turns fully.
     pub(super) turns: bool,
+    /// The cause of each end, in a few words; `None` where the range goes on.
+    pub(super) causes: [Option<String>; 2],
 }
 
 /// Returns the range of each driver that is an input, and poses in the ranges.
@@ -49,6 +51,7 @@ pub(super) fn driver_ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, V
             | End::NotFound { value } => Some(*value),
         };
         let ends = [end(&range.lower), end(&range.upper)];
+        let causes = [cause(&range.lower, "min"), cause(&range.upper, "max")];
         poses.extend(range.samples.into_iter().map(|sample| sample.pose.q));
         let turns = ends == [None, None];
         let ends = match ends {
@@ -60,11 +63,26 @@ pub(super) fn driver_ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, V
                 [low, low + TAU]
             }
         };
-        Some(DriverRange { ends, turns })
+        Some(DriverRange {
+            ends,
+            turns,
+            causes,
+        })
     });
     let ranges = ranges.collect();
     solver.restore(&home);
     (ranges, poses)
+}
+
+/// Returns the cause of the end of a range; `key` of the driver bounds it on this side.
+fn cause(end: &End, key: &str) -> Option<String> {
+    match end {
+        End::Turns(_) | End::NotFound { .. } => None,
+        End::Singular(_) => Some("dead point".to_owned()),
+        End::Stop { limit, .. } => Some(format!("stop `{}`", limit.stop)),
+        End::Blocked { .. } => Some("blocked".to_owned()),
+        End::Bound { .. } => Some(format!("`{key}`")),
+    }
 }
 
 /// Returns rates for drivers that are inputs: a turn, or the range, in some seconds.

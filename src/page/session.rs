@@ -20,6 +20,11 @@ use crate::mechanism::{
     DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source, Unit,
 };
 
+/// Reciprocal condition below which a pose counts as a dead point, where rates grow without bound. A
+/// dead point is located to 1e-9 of a path at worst, and its reciprocal condition is of the size of
+/// the square root.
+const AT_DEAD_POINT: f64 = 3e-5;
+
 /// A mechanism that its reader moves by hand.
 pub struct Session {
     source: Source,
@@ -111,6 +116,11 @@ impl Session {
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
         &self.mechanism
+    }
+
+    /// Returns the file as it was opened.
+    pub(super) fn source(&self) -> &Source {
+        &self.source
     }
 
     /// Returns the pose; where the motion of freedoms goes on in other coordinates, with their
@@ -285,7 +295,8 @@ impl Session {
     pub(super) fn refresh(&mut self) {
         self.solution.follow_motions(&self.solver);
         let moves = self.release().is_ok();
-        self.has_rates = self.solution.solve(&mut self.solver).is_ok() && moves;
+        let is_solved = self.solution.solve(&mut self.solver).is_ok();
+        self.has_rates = is_solved && moves && self.solver.rcond() > AT_DEAD_POINT;
     }
 
     /// Returns the number of variables that are shown.

@@ -2,6 +2,7 @@
 
 import math
 import subprocess
+from pathlib import Path
 
 import pytest
 from harness import ROOT, program
@@ -168,6 +169,26 @@ def test_the_chart_has_the_energies_and_follows(page_of, tmp_path):
     )
     assert titles == ["energy.kinetic [J]", "energy.potential [J]", "energy.total [J]"]
     assert (first, second) == (0, 5)
+
+
+def test_the_chart_marks_impacts(page_of, tmp_path):
+    events, read = look(
+        tmp_path,
+        page_of(Path(__file__).with_name("ball.toml")),
+        """
+        find(".chart-part").open = true;
+        await until(() => all(".chart svg").length);
+        const lines = [...find(".chart svg").querySelectorAll(".event")];
+        const box = find(".chart svg").getBoundingClientRect();
+        const clientX = box.left + (Number(lines[0].getAttribute("x1")) / 560) * box.width;
+        find(".chart svg").dispatchEvent(new PointerEvent("pointermove", { clientX, clientY: box.top + 50, bubbles: true }));
+        return [lines.map((line) => Number(line.getAttribute("x1"))), find(".reading").textContent];
+        """,
+    )
+    # It falls by 1 m; the time to the next impact is as long.
+    fall = math.sqrt(2 / GRAVITY)
+    assert events == pytest.approx([64 + 486 * fall, 64 + 486 * 2 * fall], abs=0.5)
+    assert "impact at stop bottom" in read
 
 
 def test_a_mass_that_is_missing_is_told(page_of, tmp_path):

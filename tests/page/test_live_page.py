@@ -99,7 +99,7 @@ def test_a_dead_point_stops_the_hand(page_of, tmp_path):
         """,
     )
     assert abs(value - limit) < 1e-9
-    assert "dead point" in text and "`rocker_angle`" in text
+    assert "dead point" in text and "with rocker_angle at" in text
     assert marked
     assert abs(back - 0.1) < 1e-9
     assert "dead point" in slid[0] and slid[1] == slid[0]
@@ -227,22 +227,158 @@ def test_saving_and_reading_again(page_of, tmp_path):
 
 
 def test_a_wrong_file_tells_its_problem_and_the_mechanism_stays(page_of, tmp_path):
-    text, count, hidden = look(
+    text, apart, count, hidden = look(
         tmp_path,
         page_of("four_bar"),
         """
         const good = find(".text").value;
+        find(".text").closest("details").open = true;
         find(".text").value = good.replace('"crank.O"', '"cranck.O"');
         find(".apply").click();
-        const told = find(".problems").textContent;
+        const told = find(".file-problems");
+        const apart = told.getBoundingClientRect().top - find(".text").getBoundingClientRect().bottom;
+        const text = told.textContent;
         live.drive(0, 1.5);
         find(".text").value = good;
         find(".apply").click();
-        return [told, places().length, find(".problems").hidden];
+        return [text, apart, places().length, told.hidden];
         """,
     )
     assert "no body `cranck`; did you mean `crank`?" in text
+    # Beside the editor.
+    assert 0 <= apart < 20
     assert count > 5 and hidden
+
+
+def test_undo_returns_to_the_file_before(page_of, tmp_path):
+    crank, base, text, again = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const base = () => live.frame[live.places.parameters + live.page.parameters.findIndex((p) => p.name === "base")];
+        live.keep();
+        live.move({ do: "drive", driver: 0, value: 1.5 });
+        const good = find(".text").value;
+        find(".text").value = good.replace("value = 0.40,", "value = 0.42,");
+        find(".apply").click();
+        const applied = base();
+        find(".undo").click();
+        const undone = [number("crank_angle.position"), [applied, base()], find(".text").value === good];
+        find(".redo").click();
+        return [...undone, base()];
+        """,
+    )
+    assert crank == 1.5
+    assert base == [0.42, BASE] and text
+    assert again == 0.42
+
+
+def test_a_fast_motion_is_shown_slowly_and_says_so(page_of, tmp_path):
+    text = (ROOT / "mechanisms" / "four_bar.toml").read_text(encoding="utf-8")
+    start = 'start = "60*deg"'
+    assert start in text
+    file = tmp_path / "fast.toml"
+    # 600 turns a minute.
+    file.write_text(text.replace(start, 'motion = "20*pi*t"'), encoding="utf-8")
+    steps, clock, slow = look(
+        tmp_path,
+        page_of(file),
+        """
+        const steps = [];
+        let before = number("crank_angle.position");
+        press(" ");
+        for (let k = 0; k < 20; k += 1) {
+          await new Promise(requestAnimationFrame);
+          const now = number("crank_angle.position");
+          steps.push(now - before);
+          before = now;
+        }
+        const clock = find(".clock").textContent;
+        press(" ");
+        find(".speed").value = "0.1";
+        find(".speed").dispatchEvent(new Event("change"));
+        live.draw();
+        return [steps, clock, find(".clock").textContent];
+        """,
+    )
+    # Two turns a second, a tenth of a second per picture at most.
+    assert 0 < max(steps) <= 0.4 * math.pi * (1 + 1e-9)
+    assert clock.endswith("s, slow motion 1/5")
+    assert "slow" not in slow
+
+
+def test_a_dead_point_has_no_finite_values_and_the_slider_says_where(page_of, tmp_path):
+    text = (ROOT / "mechanisms" / "four_bar.toml").read_text(encoding="utf-8")
+    driver = 'crank_angle = { coordinate = "angle", markers = ["ground.O2", "crank.O"], start = "60*deg" }'
+    other = 'rocker_angle = { coordinate = "angle", markers = ["ground.O4", "rocker.O"], start = 2.1437 }'
+    assert driver in text
+    file = tmp_path / "rocker_has_dead_points.toml"
+    file.write_text(
+        text.replace(driver, other).replace("[measures]\n", '[measures]\nturning = { value = "crank.omega" }\n'),
+        encoding="utf-8",
+    )
+    ends, values, note, marked = look(
+        tmp_path,
+        page_of(file),
+        """
+        const value = () => all(".readings div").map((row) => row.textContent).find((row) => row.startsWith("turning"));
+        const before = value();
+        live.move({ do: "drive", driver: 0, value: 0 });
+        return [find(".driver-rows .ends").textContent, [before, value()], find(".at-rates").textContent,
+          all(".message code").map((code) => code.textContent)];
+        """,
+    )
+    assert ends.count("dead point at") == 2
+    assert "no finite value" not in values[0] and "no finite value" in values[1]
+    assert "rocker_angle at 90 deg/s" in note and "At this dead point" in note
+    # Names stand without back quotes.
+    assert "rocker_angle" in marked
+
+
+def test_messages_have_no_idle_zeros(page_of, tmp_path):
+    text = look(
+        tmp_path,
+        page_of("latch"),
+        """
+        live.move({ do: "drive", driver: 0, value: 1 });
+        return message();
+        """,
+    )
+    assert "throw = 0.02 m" in text and "0.729727656 rad" in text
+
+
+def test_a_chart_is_read_at_the_pointer(page_of, tmp_path):
+    labels, pointed, present, panels, listed = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        find(".chart-part").open = true;
+        const choose = (name) => all(".variables label").find((label) => label.textContent.trim() === name).firstChild.click();
+        for (const index of live.chart.chosen) choose(live.page.variables[index].name);
+        choose("crank_angle.position");
+        await until(() => all(".chart svg").length === 1);
+        const svg = find(".chart svg");
+        const box = svg.getBoundingClientRect();
+        // The axis goes from 64 to 550 of 560: a quarter of the turn.
+        const clientX = box.left + ((64 + 0.25 * 486) / 560) * box.width;
+        svg.dispatchEvent(new PointerEvent("pointermove", { clientX, clientY: box.top + 50, bubbles: true }));
+        const pointed = find(".reading").textContent;
+        svg.dispatchEvent(new PointerEvent("pointerleave"));
+        const present = find(".reading").textContent;
+        const labels = [...svg.querySelectorAll("text")].map((text) => text.textContent);
+        choose("rocker.phi");
+        find(".narrow").value = "omega";
+        find(".narrow").dispatchEvent(new Event("input"));
+        const listed = all(".variables label").filter((label) => !label.hidden).map((label) => label.textContent.trim());
+        return [labels, pointed, present, all(".chart svg").length, listed];
+        """,
+    )
+    assert {"0", "60", "120", "180", "240", "300", "360"} <= set(labels)
+    assert pointed == "crank_angle = 90 deg: 90 deg"
+    assert present == "crank_angle = 60 deg: 60 deg"
+    assert panels == 2
+    # Those chosen, and those whose names hold the text.
+    assert "rocker.omega" in listed and "rocker.phi" in listed and "coupler.x" not in listed
 
 
 def test_playing_and_keys(page_of, tmp_path):

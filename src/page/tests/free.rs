@@ -390,3 +390,23 @@ fn a_host_holds_and_lets_go() {
     ask(json!({ "do": "open", "name": "a.toml", "text": driven, "files": [] }));
     assert_eq!(ask(hold)["message"], "nothing moves by forces");
 }
+
+// A body that falls by 1 m and is thrown back: v = √(2 g h), and the next impact 2 e v / g later.
+#[test]
+fn a_chart_tells_impacts() {
+    let mut session = open(include_str!("../../../tests/page/ball.toml"));
+    let chart = session.chart(Over::Time, &[], 10);
+    let events = chart["events"].as_array().expect("a list");
+    let fall = (2.0 / GRAVITY).sqrt();
+    assert_eq!(events.len(), 2, "{events:?}");
+    for (event, time) in events.iter().zip([fall, 2.0 * fall]) {
+        let x = event["x"].as_f64().expect("a time");
+        assert!((x - time).abs() < TOLERANCE, "{x} {time}");
+        let text = event["text"].as_str().expect("a text");
+        assert!(text.contains("impact at stop `bottom`"), "{text}");
+    }
+    // While it plays nothing is kept.
+    session.go_to(0.6);
+    let chart = session.chart(Over::Time, &[], 10);
+    assert_eq!(chart["events"].as_array().map(Vec::len), Some(2));
+}

@@ -1,5 +1,6 @@
 //! Moves by hand against closed forms.
 
+mod files;
 mod free;
 
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
