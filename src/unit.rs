@@ -211,6 +211,13 @@ impl Unit {
 }
 
 impl DisplayUnit {
+    /// The metre.
+    pub const METRE: Self = Self {
+        name: "m",
+        factor: 1.0,
+        dimension: LENGTH,
+    };
+
     /// `mm`.
     pub const MILLIMETRE: Self = Self::new("mm", 1e3, LENGTH);
     /// `cm`.

@@ -6,7 +6,7 @@ use super::sheet::Sheet;
 use super::sweep::{follow, spread, sweep, usual_driver};
 use super::symbol::{Symbol, compose_dimensions, instant_centre};
 use crate::kinematics::{Error, InstantCentre, Pose, Rates, Solver};
-use crate::mechanism::{BodyId, DriverId, Jet};
+use crate::mechanism::{BodyId, DisplayUnit, DriverId, Jet};
 
 /// The contents of a diagram.
 ///
@@ -84,6 +84,7 @@ impl Diagram {
         let Pose { q, parameters, .. } = solver.pose();
         if self.dimensions {
             scene.add(compose_dimensions(mechanism, parameters, q));
+            scene.length_unit = Some(mechanism.length_display().unwrap_or(DisplayUnit::METRE));
         }
         if let Some((centres, note)) = centres {
             scene.notes.extend(note);

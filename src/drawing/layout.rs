@@ -6,6 +6,7 @@ use super::palette::Colour;
 use super::scene::Scene;
 use super::sheet::{Bounds, CAPITALS, Layer, MARGIN, Mark, Sheet, Stroke, Text, WIDTH};
 use super::symbol::{OtherPoses, Pen, Symbol, bounds};
+use crate::mechanism::DisplayUnit;
 
 /// Greatest height of a sheet as a part of the width.
 const MOST_HEIGHT: f64 = 0.8125;
@@ -132,7 +133,7 @@ impl Draft {
     /// Adds the scale bar and the notes below and moves everything to its place.
     fn finish(mut self, scene: &Scene, scale: f64, width: f64) -> Sheet {
         let corner = Point::new(self.bounds.low.x, self.bounds.high.y + 16.0);
-        let (bar, text) = scale_bar(corner, scale);
+        let (bar, text) = scale_bar(corner, scale, scene.length_unit);
         self.marks.push(bar);
         self.texts.push(text);
         let mut start = corner + Point::new(0.0, CAPITALS);
@@ -183,11 +184,11 @@ fn notes(sentences: &[String], width: f64) -> Vec<String> {
     lines
 }
 
-/// Returns a bar of a round length and its text.
-pub(super) fn scale_bar(corner: Point, scale: f64) -> (Mark, Text) {
+/// Returns a bar of a round length and its text, in a unit.
+pub(super) fn scale_bar(corner: Point, scale: f64, unit: Option<DisplayUnit>) -> (Mark, Text) {
     const LONGEST: f64 = 110.0;
     const TICK: f64 = 4.0;
-    let (length, name) = round_length(LONGEST / scale);
+    let (length, name) = round_length(LONGEST / scale, unit);
     let [start, end] = [0.0, length * scale].map(|x| corner + Point::new(x, 0.0));
     let tick = Point::new(0.0, TICK);
     let mut outline = Outline::line(&[start - tick, start + tick]);
@@ -202,9 +203,11 @@ pub(super) fn scale_bar(corner: Point, scale: f64) -> (Mark, Text) {
     (bar, text)
 }
 
-/// Returns the greatest length of 1, 2 or 5 times a power of ten up to `longest` \[m\], and its
-/// name.
-fn round_length(longest: f64) -> (f64, String) {
+/// Returns the greatest length of 1, 2 or 5 times a power of ten of a unit up to `longest` \[m\], and
+/// its name.
+fn round_length(longest: f64, unit: Option<DisplayUnit>) -> (f64, String) {
+    let of_unit = unit.map_or(1.0, |unit| unit.factor);
+    let longest = longest * of_unit;
     let exponent = longest.log10().floor();
     // Rounding may make a length that fits exactly seem too long.
     let digit = [5.0, 2.0]
@@ -212,15 +215,15 @@ fn round_length(longest: f64) -> (f64, String) {
         .find(|digit| digit * 10_f64.powf(exponent) <= longest * (1.0 + 1e-9))
         .unwrap_or(1.0);
     let length = digit * 10_f64.powf(exponent);
-    // Millimetres below a metre, as on drawings.
-    let (unit, shift) = if exponent < 0.0 {
-        ("mm", 3.0)
-    } else {
-        ("m", 0.0)
+    // Otherwise millimetres below a metre, as on drawings.
+    let (name, shift) = match unit {
+        Some(unit) => (unit.name, 0.0),
+        None if exponent < 0.0 => ("mm", 3.0),
+        None => ("m", 0.0),
     };
     let value = digit * 10_f64.powf(exponent + shift);
     let decimals = (-(exponent + shift)).max(0.0) as usize;
-    (length, format!("{value:.decimals$} {unit}"))
+    (length / of_unit, format!("{value:.decimals$} {name}"))
 }
 
 #[cfg(test)]
@@ -240,9 +243,12 @@ mod tests {
             (0.0075, "5 mm"),
             (0.00034, "0.2 mm"),
         ] {
-            let (length, name) = round_length(longest);
+            let (length, name) = round_length(longest, None);
             assert_eq!(name, expected);
             assert!(length <= longest * (1.0 + 1e-9) && length > 0.39 * longest);
         }
+        // As the lengths beside it.
+        let (length, name) = round_length(0.19, Some(DisplayUnit::METRE));
+        assert_eq!((length, &*name), (0.1, "0.1 m"));
     }
 }

@@ -48,6 +48,8 @@ mod palette;
 pub mod png;
 mod scene;
 mod sheet;
+#[cfg(feature = "png")]
+mod stencil;
 pub mod svg;
 mod sweep;
 pub mod symbol;

@@ -8,10 +8,10 @@ use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
 };
 
-use super::lettering;
 use super::outline::{Outline, Segment};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Sheet};
+use super::stencil;
 
 /// Width of the strokes of letters.
 const LETTER_STROKE: f64 = 1.15;
@@ -52,7 +52,7 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
         }
     }
     for text in &sheet.texts {
-        if let Some(path) = path(&lettering::strokes(&text.content, text.start, CAPITALS)) {
+        if let Some(path) = path(&stencil::strokes(&text.content, text.start, CAPITALS)) {
             let (paint, style) = (paint(text.colour, 1.0), style(LETTER_STROKE, None));
             pixels.stroke_path(&path, &paint, &style, transform, None);
         }

@@ -3,7 +3,7 @@
 use super::sweep::sweep;
 use super::symbol::{Symbol, compose};
 use crate::kinematics::{Pose, Solver};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{DisplayUnit, Mechanism};
 
 /// A mechanism as symbols that are fixed on its bodies or on ground, or that reach from one to
 /// another. The same scene is drawn at any pose of the motion that it was made for.
@@ -19,6 +19,8 @@ pub struct Scene {
     pub symbols: Vec<Symbol>,
     /// Sentences that stand below the drawing.
     pub notes: Vec<String>,
+    /// The unit of the bar that shows the scale; millimetres or metres, by its length, without one.
+    pub length_unit: Option<DisplayUnit>,
 }
 
 impl Scene {
@@ -53,6 +55,7 @@ impl Scene {
             bodies: mechanism.bodies.iter().map(|b| b.name.clone()).collect(),
             symbols: compose(mechanism, parameters, q, motion, traces),
             notes: Vec::new(),
+            length_unit: None,
         }
     }
 

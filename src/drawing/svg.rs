@@ -2,14 +2,13 @@
 
 use std::fmt::Write as _;
 
+use super::lettering::FONT_SIZE;
 use super::outline::{Outline, Point, Segment};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Layer, Mark, Sheet, Text};
 
 /// Fonts that browsers have or replace by one of theirs.
 pub(super) const FONTS: &str = "Helvetica, Arial, sans-serif";
-/// Size of a font over the height of its capitals.
-pub(super) const FONT_SIZE: f64 = 1.39;
 /// Ends and corners of lines.
 pub(super) const ROUND: &str = r#"stroke-linecap="round" stroke-linejoin="round""#;
 
@@ -78,11 +77,11 @@ pub(super) fn path(mark: &Mark, attributes: &str) -> String {
     path + "/>"
 }
 
-/// Returns the element of a text that is as wide as the space left for it, whatever the font is.
+/// Returns the element of a text that is as wide as the space left for it, whatever the font is: the
+/// font's letters, closer together or farther apart.
 pub(super) fn fitted_text(text: &Text) -> String {
     let width = number(text.width());
-    let width = format!("textLength=\"{width}\" lengthAdjust=\"spacingAndGlyphs\"");
-    text_element(text, text.start.x, &width)
+    text_element(text, text.start.x, &format!("textLength=\"{width}\""))
 }
 
 /// Returns the element of a text at a place along x, with further attributes.

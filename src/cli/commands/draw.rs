@@ -32,7 +32,7 @@ use crate::mechanism::Mechanism;
 /// A DXF is in millimetres: bodies on layers of their names, pins as circles, paths, and the
 /// contours of cams and curves as arcs within 0.001 mm.
 ///
-/// The same file gives the same picture; a PNG has its texts in the machine's sans-serif font.
+/// The same file gives the same picture, a PNG the same bytes on every machine.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:\n  \
         biela draw four_bar.toml --drive 'crank_angle = 120*deg' -o four_bar.svg\n  \

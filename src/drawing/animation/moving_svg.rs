@@ -6,10 +6,11 @@ use super::picture::groups;
 use super::stage::Stage;
 use crate::drawing::attachment::Placement;
 use crate::drawing::label::Placed;
+use crate::drawing::lettering::FONT_SIZE;
 use crate::drawing::outline::Point;
 use crate::drawing::palette::Colour;
 use crate::drawing::sheet::{Bounds, CAPITALS, Mark};
-use crate::drawing::svg::{FONT_SIZE, FONTS, escape, fitted_text, number, path_data};
+use crate::drawing::svg::{FONTS, escape, fitted_text, number, path_data};
 
 /// Most moments: of more, every second, third and so on is shown.
 const MOST_MOMENTS: usize = 240;

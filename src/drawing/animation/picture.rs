@@ -2,9 +2,10 @@
 
 use super::stage::Stage;
 use crate::drawing::attachment::Placement;
+use crate::drawing::lettering::FONT_SIZE;
 use crate::drawing::scene::Scene;
 use crate::drawing::sheet::{CAPITALS, Layer, Mark, WIDTH};
-use crate::drawing::svg::{FONT_SIZE, FONTS, ROUND, escape, number, path, text_element};
+use crate::drawing::svg::{FONTS, ROUND, escape, number, path, text_element};
 
 /// Widest picture that fits a small screen, in units of the sheet; wider ones scroll there.
 const USUAL: f64 = 1.2 * WIDTH;

@@ -85,7 +85,7 @@ impl Stage {
             labels,
             lengths,
             points,
-            scale_text: scale_bar(Point::zeros(), scale).1,
+            scale_text: scale_bar(Point::zeros(), scale, None).1,
         };
         stage.frame(q, sampled());
         stage
@@ -130,7 +130,7 @@ impl Stage {
             }
         }
         let corner = Point::new(bounds.low.x, bounds.high.y + 16.0);
-        let (bar, text) = scale_bar(corner, self.scale);
+        let (bar, text) = scale_bar(corner, self.scale, None);
         for point in bar.outline.flattened().into_iter().flatten() {
             bounds.add(point);
         }

@@ -154,3 +154,40 @@ fn instant_centres_far_away_are_told_in_words() {
     };
     assert!(labels.iter().any(told));
 }
+
+// The mechanism names no unit: lengths are in metres, and so is the scale, which is in millimetres
+// without them.
+#[test]
+fn the_scale_has_the_unit_of_the_dimensions() {
+    let text = r#"format = 1
+name = "arm"
+[ground.markers]
+O = [0, 0]
+[bodies.arm]
+markers = { O = [0, 0], P = [0.5, 0] }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+[drivers]
+angle = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0.3 }
+[outputs]
+markers = ["arm.P"]
+"#;
+    let texts = |dimensions: bool| {
+        let diagram = Diagram {
+            dimensions,
+            ..Diagram::default()
+        };
+        let (mut solver, _) = assembled(&parse(text));
+        svg::write(
+            &diagram.sheet(&mut solver).expect("it is drawn"),
+            640,
+            false,
+        )
+    };
+    let with = texts(true);
+    assert!(
+        with.contains(">lengths in m<") && with.contains(">0.2 m<"),
+        "{with}"
+    );
+    assert!(texts(false).contains(">200 mm<"));
+}
