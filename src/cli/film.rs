@@ -9,7 +9,7 @@ use super::output::{tell_written, write};
 use super::picture::extension;
 use super::recorder::Recorder;
 use crate::drawing::ForcePlace;
-use crate::drawing::animation::{Animation, Clock, Moment, moving_svg, page};
+use crate::drawing::animation::{Animation, Clock, Moment, moving_gif, moving_svg, page};
 
 /// The moments of a run.
 pub(super) struct Film {
@@ -89,10 +89,11 @@ impl Recorder for FilmFile {
     fn finish(self: Box<Self>, motion: &Motion) -> Result<(), Error> {
         let animation = self.film.animation(motion);
         let content = match &*extension(&self.path) {
-            "svg" => moving_svg(&animation),
-            _ => page(&animation),
+            "svg" => moving_svg(&animation).into_bytes(),
+            "gif" => moving_gif(&animation),
+            _ => page(&animation).into_bytes(),
         };
-        write(&self.path, content.as_bytes())?;
+        write(&self.path, &content)?;
         tell_written(&self.path);
         Ok(())
     }

@@ -33,6 +33,7 @@ mod signals;
 mod stdout;
 mod suggested_estimates;
 mod times;
+mod xlsx;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

@@ -10,7 +10,7 @@ use tiny_skia::{
 
 use super::outline::{Outline, Segment};
 use super::palette::Colour;
-use super::sheet::{CAPITALS, Sheet};
+use super::sheet::{CAPITALS, Mark, Sheet, Text};
 use super::stencil;
 
 /// Width of the strokes of letters.
@@ -30,34 +30,73 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
     if width.max(height) > MOST_PIXELS {
         return None;
     }
-    let mut pixels = Pixmap::new(width, height)?;
+    let mut canvas = Canvas::new([width, height], [0.0; 2], scale)?;
     if !transparent {
-        pixels.fill(tiny_skia::Color::WHITE);
+        canvas.clear();
     }
-    let transform = Transform::from_scale(scale as f32, scale as f32);
     for mark in &sheet.marks {
+        canvas.draw(mark);
+    }
+    for text in &sheet.texts {
+        canvas.write(text);
+    }
+    Some(encode(&canvas.pixels))
+}
+
+/// Pixels on which marks and texts are drawn.
+pub(super) struct Canvas {
+    pixels: Pixmap,
+    transform: Transform,
+}
+
+impl Canvas {
+    /// Returns a transparent canvas of this width and height, which shows a sheet from its `corner`
+    /// on, with `scale` pixels per unit; `None` without pixels.
+    pub(super) fn new([width, height]: [u32; 2], [x, y]: [f64; 2], scale: f64) -> Option<Self> {
+        let transform = Transform::from_translate(-x as f32, -y as f32);
+        Some(Self {
+            pixels: Pixmap::new(width, height)?,
+            transform: transform.post_scale(scale as f32, scale as f32),
+        })
+    }
+
+    /// Makes the canvas white.
+    pub(super) fn clear(&mut self) {
+        self.pixels.fill(tiny_skia::Color::WHITE);
+    }
+
+    /// Draws a line or an area.
+    pub(super) fn draw(&mut self, mark: &Mark) {
         // An outline without extent has no path.
         let Some(path) = path(&mark.outline) else {
-            continue;
+            return;
         };
         if let Some((colour, opacity)) = mark.fill {
             let paint = paint(colour, opacity);
-            pixels.fill_path(&path, &paint, FillRule::Winding, transform, None);
+            (self.pixels).fill_path(&path, &paint, FillRule::Winding, self.transform, None);
         }
         if let Some(stroke) = mark.stroke {
             let dashes = stroke.dashes.iter().map(|length| *length as f32).collect();
             let paint = paint(stroke.colour, 1.0);
             let style = style(stroke.width, StrokeDash::new(dashes, 0.0));
-            pixels.stroke_path(&path, &paint, &style, transform, None);
+            (self.pixels).stroke_path(&path, &paint, &style, self.transform, None);
         }
     }
-    for text in &sheet.texts {
+
+    /// Writes a text.
+    pub(super) fn write(&mut self, text: &Text) {
         if let Some(path) = path(&stencil::strokes(&text.content, text.start, CAPITALS)) {
             let (paint, style) = (paint(text.colour, 1.0), style(LETTER_STROKE, None));
-            pixels.stroke_path(&path, &paint, &style, transform, None);
+            (self.pixels).stroke_path(&path, &paint, &style, self.transform, None);
         }
     }
-    Some(encode(&pixels))
+
+    /// Returns red, green and blue of each pixel, row by row.
+    #[cfg(feature = "gif")]
+    pub(super) fn colours(&self) -> impl Iterator<Item = [u8; 3]> {
+        let pixels = self.pixels.pixels().iter();
+        pixels.map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
+    }
 }
 
 /// Returns the pixels as a PNG file: 8 bits per channel with opacity, each row as its difference

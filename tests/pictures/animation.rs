@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::common::{assembled, parse, shipped, stems, straight_to};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use biela::drawing::animation::{Animation, Clock, Moment, Reading, moving_svg, page};
+use biela::drawing::animation::{Animation, Clock, Moment, Reading, moving_gif, moving_svg, page};
 use biela::drawing::symbol::ForceKind;
 use biela::drawing::{ForcePlace, Scene};
 use biela::kinematics::{Curve, ForceParts, ForceQuantity, KnownMotion, Rates};
@@ -487,4 +487,90 @@ fn names_in_moving_pictures_never_cover_each_other() {
             .collect(),
     };
     assert!(hidden_names(&passing) > 0);
+}
+
+/// The pictures of a GIF, each whole, and the sum of their delays \[s\].
+fn pictures_of(gif: &[u8]) -> (Vec<Vec<u8>>, f64) {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = options.read_info(gif).expect("it is a GIF");
+    assert_eq!(decoder.repeat(), gif::Repeat::Infinite);
+    let [width, height] = [decoder.width(), decoder.height()].map(usize::from);
+    let (mut shown, mut delays) = (vec![0; 4 * width * height], 0.0);
+    let mut pictures = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().expect("it is whole") {
+        delays += f64::from(frame.delay) / 100.0;
+        let row = 4 * usize::from(frame.width);
+        for (y, pixels) in frame.buffer.chunks_exact(row).enumerate() {
+            let start = 4 * ((usize::from(frame.top) + y) * width + usize::from(frame.left));
+            shown[start..start + row].copy_from_slice(pixels);
+        }
+        pictures.push(shown.clone());
+    }
+    (pictures, delays)
+}
+
+// A crank that turns once in a second: the picture takes two, and its halves mirror each other.
+#[test]
+fn a_gif_shows_the_motion_in_its_time() {
+    let text = r#"format = 1
+name = "crank"
+[ground.markers]
+O = [0, 0]
+[bodies.crank]
+markers = { O = [0, 0], A = [0.1, 0] }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "crank.O"] }
+[drivers]
+angle = { coordinate = "angle", markers = ["ground.O", "crank.O"], start = 0 }
+"#;
+    let (mut solver, mut path) = assembled(&parse(text));
+    let scene = Scene::new(&mut solver, true);
+    let moments = (0..=20).map(|k| {
+        let angle = std::f64::consts::TAU * f64::from(k) / 20.0;
+        path.curves[0] = Curve::held(angle, solver.pose().drivers[0]);
+        solver.track(&path).expect("it turns");
+        Moment {
+            q: solver.pose().q.clone(),
+            rates: Default::default(),
+            readings: Vec::new(),
+            forces: Vec::new(),
+        }
+    });
+    let animation = Animation {
+        moments: moments.collect(),
+        scene,
+        clock: Clock {
+            start: 0.0,
+            step: 0.05,
+            stop: 1.0,
+        },
+        readings: Vec::new(),
+        forces: Vec::new(),
+    };
+    let gif = moving_gif(&animation);
+    assert_eq!(gif, moving_gif(&animation));
+    let (pictures, duration) = pictures_of(&gif);
+    // The last moment is the first one.
+    assert_eq!(pictures.len(), 20);
+    assert!((duration - 2.0).abs() < 1e-9, "{duration}");
+    // The middle of the crank's colour is on a circle about its pivot, in the order of the angles.
+    let blue = |picture: &[u8]| -> [f64; 2] {
+        let pixels = picture.chunks_exact(4).enumerate();
+        let of_crank = pixels.filter(|(_, p)| p[2] > 200 && p[0] < 160);
+        let places: Vec<[f64; 2]> = of_crank
+            .map(|(k, _)| [(k % 640) as f64, (k / 640) as f64])
+            .collect();
+        assert!(places.len() > 1000, "{}", places.len());
+        [0, 1].map(|axis| places.iter().map(|p| p[axis]).sum::<f64>() / places.len() as f64)
+    };
+    let middles: Vec<[f64; 2]> = pictures.iter().map(|picture| blue(picture)).collect();
+    let centre = [0, 1].map(|axis| middles.iter().map(|m| m[axis]).sum::<f64>() / 20.0);
+    for (k, [x, y]) in middles.iter().enumerate() {
+        let turned = f64::atan2(centre[1] - y, x - centre[0]);
+        let angle = std::f64::consts::TAU * k as f64 / 20.0;
+        let off = (turned - angle + 0.5).rem_euclid(std::f64::consts::TAU) - 0.5;
+        // Joints cover parts of the crank: a twentieth of a turn is 0.31.
+        assert!(off.abs() < 0.1, "{k}: {off}");
+    }
 }

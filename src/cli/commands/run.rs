@@ -1,7 +1,7 @@
 //! `biela run`
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -20,6 +20,7 @@ use crate::cli::progress::Progress;
 use crate::cli::recorder::Recorder;
 use crate::cli::stdout::{STDOUT, is_stdout};
 use crate::cli::times::{Span, Times};
+use crate::cli::xlsx::{MOST_COLUMNS, MOST_ROWS, Xlsx};
 use crate::drawing::ForcePlace;
 use crate::mechanism::{Driver, DriverSource, Mechanism, rounded};
 
@@ -58,9 +59,9 @@ pub(in crate::cli) struct Run {
     /// plots drivers with their efforts and measures, or points of interest, or bodies].
     #[arg(short, long, value_name = "NAMES", value_delimiter = ',')]
     variables: Vec<String>,
-    /// The CSV file to write, `-` for stdout [default: stdout, if there is neither --plot nor
-    /// --animate].
-    #[arg(short, long, value_name = "CSV")]
+    /// The file to write: CSV, or Excel if its extension is .xlsx; `-` is CSV to stdout [default:
+    /// stdout, if there is neither --plot nor --animate].
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Plot positions, velocities and accelerations over time, drivers in panels of their own;
     /// the picture's extension, .svg or .png, decides, and `-` is SVG to stdout. Without
@@ -71,8 +72,8 @@ pub(in crate::cli) struct Run {
     #[arg(long, value_name = "NAME", requires = "plot")]
     over: Option<String>,
     /// Write a page on which the mechanism moves, .html or .htm or `-` for stdout, or a picture that
-    /// moves by itself, .svg. Both work offline. Of more than 10,000 rows the page shows every
-    /// second, third and so on, of more than 240 the picture.
+    /// moves by itself, .svg or .gif. All work offline. Of more than 10,000 rows the page shows every
+    /// second, third and so on, of more than 240 the SVG, of more than 150 the GIF.
     #[arg(short, long, value_name = "PAGE")]
     animate: Option<PathBuf>,
     /// Let the page show forces as arrows where its reader asks for them: what joints and drivers
@@ -142,7 +143,12 @@ impl Run {
         notes.iter().flatten().for_each(Message::show);
         let mut recorders: Vec<Box<dyn Recorder>> = Vec::new();
         if let Some(path) = &self.output {
-            recorders.push(Box::new(Csv::create(path.clone(), written)?));
+            recorders.push(if extension(path) == "xlsx" {
+                check_sheet(rows, written.len() + 1)?;
+                Box::new(Xlsx::new(path.clone(), written))
+            } else {
+                Box::new(Csv::create(path.clone(), written)?)
+            });
         }
         if let (Some(path), Some(format)) = (self.plot.clone(), format) {
             recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice, over)));
@@ -216,17 +222,20 @@ impl Run {
     fn check_page(&self) -> Result<(), Error> {
         match &self.animate {
             Some(path)
-                if !is_stdout(path) && !matches!(&*extension(path), "html" | "htm" | "svg") =>
+                if !is_stdout(path)
+                    && !matches!(&*extension(path), "html" | "htm" | "svg" | "gif") =>
             {
                 Err(Error::Usage(format!(
-                    "`{}` has none of the extensions .html, .htm and .svg",
+                    "`{}` has none of the extensions .html, .htm, .svg and .gif",
                     path.display()
                 )))
             }
-            Some(path) if self.forces && extension(path) == "svg" => Err(Error::Usage(
-                "--forces: a moving picture has no arrows of forces; a page has them, .html"
-                    .to_owned(),
-            )),
+            Some(path) if self.forces && matches!(&*extension(path), "svg" | "gif") => {
+                Err(Error::Usage(
+                    "--forces: a moving picture has no arrows of forces; a page has them, .html"
+                        .to_owned(),
+                ))
+            }
             _ => Ok(()),
         }
     }
@@ -242,7 +251,8 @@ impl Run {
 
     /// Returns a note of the size of the CSV file, if that is large.
     fn note_of_size(&self, times: &Times, columns: usize) -> Option<Message> {
-        let path = self.output.as_deref().filter(|path| !is_stdout(path))?;
+        let is_csv = |path: &&Path| !is_stdout(path) && extension(path) != "xlsx";
+        let path = self.output.as_deref().filter(is_csv)?;
         let rows = times.steps + 1;
         let bytes = rows as f64 * columns as f64 * BYTES_PER_NUMBER;
         (bytes > LARGE).then(|| {
@@ -253,6 +263,17 @@ impl Run {
             ))
         })
     }
+}
+
+/// Refuses what is larger than a sheet of an Excel file.
+fn check_sheet(rows: u64, columns: usize) -> Result<(), Error> {
+    if rows < MOST_ROWS && columns <= MOST_COLUMNS {
+        return Ok(());
+    }
+    Err(Error::Usage(format!(
+        "--output: {rows} rows of {columns} columns are more than an Excel file has; write a CSV \
+         file, or fewer with --step and --variables"
+    )))
 }
 
 /// Returns a note if nothing moves, with an example of a motion.

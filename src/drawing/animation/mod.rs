@@ -5,6 +5,8 @@
 
 mod film;
 mod moving;
+#[cfg(feature = "gif")]
+mod moving_gif;
 mod moving_svg;
 mod page;
 mod picture;
@@ -12,6 +14,8 @@ mod recorded;
 mod stage;
 
 pub use moving::MovingPicture;
+#[cfg(feature = "gif")]
+pub use moving_gif::moving_gif;
 pub use moving_svg::moving_svg;
 pub use page::{fill, page, page_with, player};
 

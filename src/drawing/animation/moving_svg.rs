@@ -66,16 +66,21 @@ pub fn moving_svg(animation: &Animation) -> String {
 }
 
 /// The motion of all frames.
-struct Film<'a> {
+pub(super) struct Film<'a> {
     stage: &'a Stage,
-    poses: Vec<&'a [f64]>,
-    placements: Vec<Vec<Placement>>,
+    /// The poses of a round; of a motion that does not return, also those of the way back.
+    pub(super) poses: Vec<&'a [f64]>,
+    /// The placements of all frames at each pose.
+    pub(super) placements: Vec<Vec<Placement>>,
+    /// Duration of a round \[s\].
+    pub(super) duration: f64,
     /// Attributes of every animation.
     clock: String,
 }
 
 impl<'a> Film<'a> {
-    fn new(stage: &'a Stage, poses: &[&'a [f64]], duration: f64) -> Self {
+    /// Returns a round of a motion that takes `duration` from its first pose to its last.
+    pub(super) fn new(stage: &'a Stage, poses: &[&'a [f64]], duration: f64) -> Self {
         let placements = |q: &&[f64]| stage.placements(q);
         let (first, last) = (poses.first().map(placements), poses.last().map(placements));
         let is_back = first.zip(last).is_some_and(|(first, last)| {
@@ -93,12 +98,13 @@ impl<'a> Film<'a> {
             duration *= 2.0;
         }
         let placements = poses.iter().map(|q| stage.placements(q)).collect();
-        let duration = number(duration.max(SHORTEST));
+        let duration = duration.max(SHORTEST);
         Self {
             stage,
             poses,
             placements,
-            clock: format!("dur=\"{duration}s\" repeatCount=\"indefinite\""),
+            duration,
+            clock: format!("dur=\"{}s\" repeatCount=\"indefinite\"", number(duration)),
         }
     }
 
@@ -142,12 +148,12 @@ impl<'a> Film<'a> {
     }
 
     /// Returns the middle of a label at a moment.
-    fn center(&self, attachment: usize, label: &Placed, places: &[Placement]) -> Point {
+    pub(super) fn center(&self, attachment: usize, label: &Placed, places: &[Placement]) -> Point {
         label.center([&self.placements[0], places].map(|places| places[attachment]))
     }
 
     /// Returns for each label whether it would be over an earlier one at each moment.
-    fn covered(&self) -> Vec<Vec<bool>> {
+    pub(super) fn covered(&self) -> Vec<Vec<bool>> {
         let labels = &self.stage.labels;
         let mut covered = vec![Vec::with_capacity(self.placements.len()); labels.len()];
         for places in &self.placements {

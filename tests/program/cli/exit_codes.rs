@@ -226,8 +226,8 @@ fn bad_pictures_and_files_exit_with_2() {
             "invalid value '0' for '--width <PIXELS>'",
         ),
         (
-            &["run", "mechanisms/tlv.toml", "--animate", "tlv.gif"],
-            "`tlv.gif` has none of the extensions .html, .htm and .svg",
+            &["run", "mechanisms/tlv.toml", "--animate", "tlv.mp4"],
+            "`tlv.mp4` has none of the extensions .html, .htm, .svg and .gif",
         ),
         (
             &[

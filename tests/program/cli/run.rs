@@ -514,3 +514,73 @@ fn forces_at_a_change_point_are_limits() {
     );
     run("trolley.effort").success();
 }
+
+/// Returns the text of the sheet in an Excel file.
+fn sheet(file: &std::path::Path) -> String {
+    use std::io::Read as _;
+    let file = std::fs::File::open(file).expect("it is written");
+    let mut archive = zip::ZipArchive::new(file).expect("it is an archive");
+    let mut entry = archive
+        .by_name("xl/worksheets/sheet1.xml")
+        .expect("it has a sheet");
+    let mut text = String::new();
+    entry.read_to_string(&mut text).expect("it is text");
+    text
+}
+
+#[test]
+fn an_excel_file_has_the_numbers_of_the_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("motion.xlsx");
+    let run = |output: &str| {
+        let drive = "crank_angle = 60*deg + 2*pi*t";
+        let variables = "crank_angle.position,rocker.phi";
+        let arguments = [
+            "run",
+            "mechanisms/four_bar.toml",
+            "--drive",
+            drive,
+            "-v",
+            variables,
+        ];
+        biela(&[&arguments[..], &["--stop", "0.5", "-o", output]].concat()).success()
+    };
+    let csv = stdout(&run("-"));
+    run(file.to_str().unwrap());
+    let sheet = sheet(&file);
+    for (letter, name) in [
+        ("A", "time"),
+        ("B", "crank_angle.position"),
+        ("C", "rocker.phi"),
+    ] {
+        let values = column(&csv, name);
+        assert_eq!(values.len(), 51);
+        // The first row has the names.
+        for (row, value) in (2..).zip(values) {
+            let cell = format!("<c r=\"{letter}{row}\"><v>");
+            let (_, rest) = sheet.split_once(&cell).expect("it has the cell");
+            let (text, _) = rest.split_once('<').expect("the cell ends");
+            assert_eq!(text.parse(), Ok(value), "{name} {row}");
+        }
+    }
+    assert!(!sheet.contains("r=\"A53\"") && !sheet.contains("r=\"D2\""));
+    let before = std::fs::read(&file).unwrap();
+    run(file.to_str().unwrap());
+    assert!(
+        before == std::fs::read(&file).unwrap(),
+        "it has no time of its own"
+    );
+    let refused = stderr(
+        &biela(&[
+            "run",
+            "mechanisms/four_bar.toml",
+            "--step",
+            "1e-6",
+            "-o",
+            file.to_str().unwrap(),
+        ])
+        .code(2),
+    );
+    assert!(refused.contains("2000001 rows of 40 columns"), "{refused}");
+    assert!(before == std::fs::read(&file).unwrap());
+}
