@@ -17,6 +17,7 @@ mod drawn;
 mod forces;
 mod free;
 mod integrator;
+mod machines;
 mod modes;
 mod motion;
 mod range;
