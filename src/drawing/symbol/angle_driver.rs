@@ -75,7 +75,10 @@ impl Shape for AngleDriver {
             let off = place.side.map_or(0.0, |side| 1.0 - side.dot(&middle));
             place.costlier(2.0 + 4.0 * off)
         }));
-        pen.attach(Attachment::Point(self.to));
+        // The name stays beside an arrow that turns.
+        if !pen.moving {
+            pen.attach(Attachment::Point(self.to));
+        }
         pen.label(Named::Driver, &self.name, Colour::DRIVER.shade(0.8), candidates);
     }
 
