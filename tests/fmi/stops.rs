@@ -303,7 +303,7 @@ fn a_step_of_free_motion_returns_early_at_an_event() {
             .expect("legal");
         instance.exit_initialization_mode().expect("it starts");
         instance.enter_step_mode().expect("legal");
-        let mut step = |instance: &mut Instance, start: f64, h: f64| {
+        let step = |instance: &mut Instance, start: f64, h: f64| {
             let mut progress = instance.begin_step(start, h).expect("it moves");
             loop {
                 match progress {

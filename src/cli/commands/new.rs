@@ -109,6 +109,7 @@ static TEMPLATES: &[Template] = &[
     template!("v_twin"),
     template!("valve_train"),
     template!("watt_six_bar"),
+    template!("wedge_press"),
     template!("whitworth"),
     template!("wiper"),
 ];

@@ -193,7 +193,9 @@ impl<'a> Writer<'a> {
                     let ends = self.part(from, range);
                     self.entities.line(&layer, ends);
                 }
-                JointKind::Cam { follower, profile } => self.cam(from, to, follower, profile),
+                JointKind::Cam {
+                    follower, profile, ..
+                } => self.cam(from, to, follower, profile),
                 JointKind::Curve(curve) => self.curve(from, to, curve),
                 _ => {}
             }
