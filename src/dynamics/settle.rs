@@ -497,7 +497,14 @@ impl Equations {
                 mode.sign() * at.coordinate.second() >= -SLOW * at.rounding
             }
             mode if self.passive.is_held(k) => mode.sign() * at.force >= 0.0,
-            _ => true,
+            _ => {
+                let mut contacts = self.contacts().into_iter();
+                let closes = |contact: &Contact| {
+                    let [speed, acceleration] = self.opening(*contact);
+                    speed <= self.resting_speed(*contact) && acceleration < -SLOW * at.rounding
+                };
+                !contacts.any(|contact| contact.force == k && closes(&contact))
+            }
         }
     }
 

@@ -19,7 +19,7 @@ const MOST_STEPS: usize = 50;
 /// The friction in the joints of a mechanism.
 #[derive(Debug, Default)]
 pub struct JointFriction {
-    list: Vec<Bearing>,
+    list: Vec<Pair>,
     /// f.
     forces: Vec<f64>,
     /// R.
@@ -37,9 +37,9 @@ pub struct JointFriction {
     is_frozen: bool,
 }
 
-/// Friction in one joint.
+/// Friction in one joint, a lower pair.
 #[derive(Debug)]
-struct Bearing {
+struct Pair {
     name: String,
     law: Box<FrictionLaw>,
     /// Rate of the joint's coordinate, and the direction in which it slides: zero where it rests.
@@ -47,7 +47,7 @@ struct Bearing {
     sign: f64,
 }
 
-impl Bearing {
+impl Pair {
     /// Returns the force for a reaction.
     fn along<N: Number>(
         &self,
@@ -103,7 +103,7 @@ impl JointFriction {
                 return None;
             };
             law.bearing.as_ref()?;
-            Some(Bearing {
+            Some(Pair {
                 name: force.name.clone(),
                 law: law.clone(),
                 rate: 0.0,
@@ -147,12 +147,6 @@ impl JointFriction {
     pub fn set_motion(&mut self, place: usize, rate: f64, sign: f64) {
         let own = &mut self.list[place];
         (own.rate, own.sign) = (rate, sign);
-    }
-
-    /// Returns the friction of the joint at a place \[N or N m\], zero where it rests.
-    #[must_use]
-    pub fn force(&self, place: usize) -> f64 {
-        self.forces[place]
     }
 
     /// Returns the largest friction of the joint at a place while it sticks, for the reactions of the
