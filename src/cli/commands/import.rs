@@ -1,5 +1,6 @@
 //! `biela import`
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -54,7 +55,10 @@ impl Import {
             error,
         };
         let format = Format::of(&extension(&self.file), &content).map_err(failed)?;
-        let stem = Path::new(&name).file_stem().unwrap_or_default();
+        let stem = match self.link() {
+            Some(_) => OsStr::new("mechanism"),
+            None => Path::new(&name).file_stem().unwrap_or_default(),
+        };
         let stem = stem.to_string_lossy();
         let stem = stem
             .trim_end_matches(".pmks")

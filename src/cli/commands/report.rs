@@ -213,17 +213,22 @@ fn forces(input: &Input, solver: &mut Solver) -> Result<String, Error> {
         return Ok(String::new());
     }
     let forces = Forces::at_rest(solver).map_err(|error| input.error(error))?;
-    let masses = forces
-        .masses
-        .iter()
-        .map(|(body, mass, inertia)| [body.clone(), shown(*mass), shown(*inertia)]);
+    let masses = match forces.masses.is_empty() {
+        true => String::new(),
+        false => {
+            let rows = forces
+                .masses
+                .iter()
+                .map(|(body, mass, inertia)| [body.clone(), shown(*mass), shown(*inertia)]);
+            table(&["Body", "Mass [kg]", "Inertia [kg m²]"], rows)
+        }
+    };
     let values = forces
         .values
         .iter()
         .map(|(name, value, unit)| [name.clone(), shown(*value), (*unit).to_owned()]);
     Ok(format!(
-        "<h2>Forces at rest</h2>\n{}\n{}",
-        table(&["Body", "Mass [kg]", "Inertia [kg m²]"], masses),
+        "<h2>Forces at rest</h2>\n{masses}\n{}",
         table(&["Force", "Value", "Unit"], values)
     ))
 }

@@ -6,6 +6,7 @@ mod exit_codes;
 mod export;
 mod free;
 mod help;
+mod import;
 mod input;
 mod new;
 mod overwriting;
