@@ -34,7 +34,7 @@ impl LengthUnit {
     }
 }
 
-/// A mechanism as a file of another program has it. Lengths are in [`Draft::unit`], angles in
+/// A mechanism as a file of another program has it. Lengths are in the file's unit, angles in
 /// radians; points lie in the plane of the mechanism, where they are drawn.
 #[derive(Clone, Debug)]
 pub struct Draft {

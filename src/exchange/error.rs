@@ -115,7 +115,10 @@ pub enum Error {
         slider: String,
     },
     /// A slider that is not on its arc.
-    #[error("slider `{slider}` is not on an arc of radius {radius} through both ends of its way")]
+    #[error(
+        "slider `{slider}` is not on an arc of radius {} through both ends of its way",
+        crate::mechanism::shown(*radius)
+    )]
     SliderArc {
         /// Name of the slider.
         slider: String,

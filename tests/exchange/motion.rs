@@ -137,12 +137,14 @@ fn imported_mechanisms_move_like_their_originals() {
         for path in samples(format) {
             let file = path.file_name().expect("it has one").to_string_lossy();
             let name = file.split('.').next().expect("it has a start").to_owned();
-            if ["four_bar", "slider_crank", "two_loops"].contains(&&*name) {
-                check(format, &path, &name);
+            // The four-bar also with its rocker replaced by a way.
+            let name = name.trim_end_matches("_on_arc");
+            if ["four_bar", "slider_crank", "two_loops"].contains(&name) {
+                check(format, &path, name);
                 checked += 1;
             }
         }
-        assert_eq!(checked, 3, "{format}");
+        assert!(checked >= 3, "{format}");
     }
 }
 

@@ -15,7 +15,7 @@ mod joint;
 mod place;
 mod tree;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::draft::{Body, BodyRef, Draft, GROUND, LengthUnit, Mass, Point, PointRef};
 use super::error::Error;
@@ -125,13 +125,14 @@ impl Reader<'_> {
 
     /// Adds the markers of moving bodies that no joint has.
     fn points(&mut self) {
+        let known: HashSet<String> = self
+            .placed
+            .keys()
+            .map(|(_, path, _)| path.clone())
+            .collect();
         for marker in &self.assembly.markers {
             let body = marker.part.map_or(GROUND, |part| self.bodies[part]);
-            let mut known = self.placed.keys();
-            if body != GROUND
-                && !marker.is_centre
-                && !known.any(|(_, path, _)| *path == marker.path)
-            {
+            if body != GROUND && !marker.is_centre && !known.contains(&marker.path) {
                 self.place(marker, None);
             }
         }
