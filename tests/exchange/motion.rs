@@ -166,3 +166,17 @@ fn gears_turn_by_their_ratio() {
         assert!((angle - drawn + 0.25).abs() < 1e-11, "{sample}: {angle}");
     }
 }
+
+/// A pinion above its rack, on a standing axle, takes the rack along to the right when it turns
+/// counter-clockwise: x of the pinion from the rack + radius·angle is constant.
+#[test]
+fn a_rack_moves_as_its_pinion_turns() {
+    let path = crate::common::folder("tests/exchange/samples/asmt/rack.asmt");
+    let mechanism = parse(&import(&path).expect("it is right").write("rack"));
+    let (mut solver, mut way) = assembled(&mechanism);
+    straight_to(&solver, &mut way, 1.0);
+    solver.track(&way).expect("nothing stops it");
+    let rack = mechanism.bodies.iter().position(|body| body.name == "rack");
+    let x = solver.pose().q[3 * rack.expect("it has one")];
+    assert!((x - 0.01).abs() < 1e-15, "{x}");
+}
