@@ -187,7 +187,7 @@ fn run_writes_a_picture_that_moves() {
         "run",
         "mechanisms/four_bar.toml",
         "--animate",
-        "four_bar.gif",
+        "four_bar.mp4",
     ])
     .code(2);
 }
