@@ -155,7 +155,7 @@ function panel(place, axis, x, { name, unit, y, constant, events }) {
     return part;
   };
   const round = (kind, ...range) => (kind === "deg" ? angleTicks(...range) : ticks(...range));
-  for (const value of round(unit, low, high, 4)) {
+  for (const value of round(unit, low, high, 5)) {
     const height = onY(value);
     draw("line", { class: "grid", x1: LEFT, x2: WIDTH - RIGHT, y1: height, y2: height });
     draw("text", { x: LEFT - 6, y: height + 4, "text-anchor": "end" }, String(value));

@@ -76,7 +76,7 @@ class Live {
   open(file, place = ".problems", kept = false) {
     const answer = this.ask({ do: "open", kept, ...file });
     if (answer?.problems) {
-      this.find(place).textContent = answer.problems.join("\n\n");
+      say(this.find(place), answer.problems.join("\n\n"));
       this.find(place).hidden = false;
       return false;
     }

@@ -244,7 +244,7 @@ def test_a_wrong_file_tells_its_problem_and_the_mechanism_stays(page_of, tmp_pat
         return [text, apart, places().length, told.hidden];
         """,
     )
-    assert "no body `cranck`; did you mean `crank`?" in text
+    assert "no body cranck; did you mean crank?" in text
     # Beside the editor.
     assert 0 <= apart < 20
     assert count > 5 and hidden
