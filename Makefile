@@ -44,7 +44,7 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
 .PHONY: help demo test bench fuzz attack lint build module setup install uninstall refresh lock clean \
-    runtimes licences advisories wheel test-platforms test-install page test-page gallery docs
+    runtimes licences advisories wheel dist test-platforms test-install page test-page gallery docs
 .NOTPARALLEL:
 
 help: ## show this list
@@ -135,8 +135,11 @@ test-platforms: setup build ## run FMUs under Wine and QEMU, after `make runtime
 wheel: setup ## build Python wheels with the program and all runtime libraries, into target/wheels
 	@bash scripts/wheel.sh $(ONLY)
 
-test-install: ## install with pip and with cargo in empty environments, after `make wheel`
-	@bash scripts/test_install.sh
+dist: setup ## put a release into target/dist: wheels, archives, checksums (ONLY='linux64 win64': for these)
+	@bash scripts/dist.sh $(ONLY)
+
+test-install: ## install with pip, from the archive and with cargo in empty environments, after `make dist`
+	@bash scripts/test_install.sh $(ONLY)
 
 licences: ## renew the licences of what is inside the library and inside pages
 	python3 scripts/licences.py
@@ -168,6 +171,9 @@ install: build ## install under PREFIX (default: ~/.local)
 	    echo 'without `make page`, pages play motions computed beforehand'; \
 	fi
 	install -m 644 $(MECHANISMS) "$(SHARE_DIR)/mechanisms"
+	@case ":$$PATH:" in *":$(BIN_DIR):"*) ;; *) \
+	    echo 'add $(BIN_DIR) to the PATH: export PATH="$(BIN_DIR):$$PATH"' ;; \
+	esac
 
 uninstall: ## remove what `make install` put under PREFIX
 	rm -f "$(BIN_DIR)/biela"

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Installs biela in empty environments and uses it there: the wheel of this machine with pip, without
-# cargo on the PATH, and the sources with `cargo install`, without what `make setup` makes.
+# Installs biela in empty environments and uses it there, without cargo on the PATH: the wheel of this
+# machine with pip, and its archive of `make dist`; and the sources with `cargo install`, without what
+# `make setup` makes. Under Wine it uses the archive for Windows, where both are there.
 #
-#   scripts/test_install.sh [pip cargo]...
+#   scripts/test_install.sh [pip archive cargo]...
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
@@ -53,6 +54,37 @@ print('the module runs it')")
     say "pip: $(basename "$wheel") works"
 }
 
+# Checks that the files of a release are those of their checksums, and prints the archive of a name.
+archive() { # NAME
+    (cd target/dist && python3 ../../scripts/pack.py --sums . | cmp -s - SHA256SUMS) ||
+        fail "target/dist is not what SHA256SUMS lists" "Run \`make dist\` first."
+    find target/dist -name "biela-*-$1"
+}
+
+test_archive() {
+    local archive system
+    case "$(uname -s)" in Darwin) system=macos ;; *) system=linux ;; esac
+    archive=$(archive "$system-$(uname -m).tar.gz")
+    mkdir "$WORK/archive"
+    tar xzf "$archive" -C "$WORK/archive" --strip-components 1
+    use "$WORK/archive/bin"
+    [ -f "$WORK/archive/share/biela/docs/README.md" ] || fail "$archive has no documentation"
+    (cd "$WORK/use" && "$WORK/archive/bin/biela" page first.toml)
+    say "archive: $(basename "$archive") works"
+    archive=$(archive windows-x86_64.zip)
+    if [ -n "$archive" ] && has wine; then
+        python3 -m zipfile -e "$archive" "$WORK/windows"
+        (
+            cd "$WORK/windows"/*/
+            export WINEPREFIX=$WORK/wine WINEDEBUG=-all
+            wine bin/biela.exe new first --from four_bar
+            wine bin/biela.exe export first.toml
+            cmp first.fmu "$WORK/use/first.fmu"
+        )
+        say "archive: $(basename "$archive") writes the same FMU under Wine"
+    fi
+}
+
 test_cargo() {
     # No settings of the checkout's, no Python, no libclang: a clean copy of the sources.
     git archive --prefix=biela/ HEAD | tar x -C "$WORK"
@@ -66,7 +98,7 @@ test_cargo() {
 }
 
 if [ $# -eq 0 ]; then
-    set -- pip cargo
+    set -- pip archive cargo
 fi
 for way in "$@"; do
     "test_$way"
