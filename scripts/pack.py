@@ -13,6 +13,7 @@ import io
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tarfile
 import zipfile
@@ -40,8 +41,10 @@ def version() -> str:
 def content(program: Path) -> dict[str, Path]:
     """Returns the files of an archive by their paths in it."""
     files = {f"bin/{program.name}": program}
-    for library in sorted(RUNTIMES.glob("*/biela.*")):
-        files[f"lib/biela/{library.parent.name}/{library.name}"] = library
+    # Those of these sources alone.
+    command = ["bash", ROOT / "scripts" / "runtimes.sh", "--current"]
+    current = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    files |= {f"lib/biela/{library}": RUNTIMES / library for library in current.split()}
     files["lib/biela/page.wasm"] = RUNTIMES / "page.wasm"
     for pattern in ["mechanisms/*.toml", "mechanisms/*.csv", "mechanisms/README.md"]:
         files |= {f"share/biela/{path.relative_to(ROOT)}": path for path in ROOT.glob(pattern)}
