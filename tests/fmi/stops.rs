@@ -282,7 +282,7 @@ fn the_state_of_a_contact_is_saved() {
     }
 }
 
-/// Where the host handles events, a step ends at the first one: with intermediate update and without.
+/// A step ends, for a host that handles events, at the first one: with intermediate update and without.
 #[test]
 fn a_step_of_free_motion_returns_early_at_an_event() {
     for intermediate_update in [false, true] {

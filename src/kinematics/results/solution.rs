@@ -269,6 +269,10 @@ impl Solution {
         direction: &Direction,
         loads: &[f64],
     ) -> Result<Option<ForceSensitivity>, Error> {
+        if !self.frictions.is_empty() {
+            // Friction is that of the pose.
+            self.solve_forces(solver, ForceParts::ALL)?;
+        }
         let Self {
             rates,
             driver_rates,

@@ -251,7 +251,7 @@ fn the_acceleration_changes_as_differences_say() {
     }
 }
 
-/// What friction takes from the energy is its work, in events and between; the machine comes to rest
+/// Friction takes its work from the energy, in events and between; the machine comes to rest
 /// and stays there.
 #[test]
 fn a_machine_comes_to_rest() {

@@ -227,7 +227,7 @@ fn wheels_meet_on_both_flanks() {
     assert_near(angular, 0.001 * velocity);
 }
 
-/// Where the flanks touch, the wheels accelerate together, as derivatives know too.
+/// The wheels accelerate together as the flanks touch; derivatives know it too.
 #[test]
 fn touching_flanks_carry_the_torque() {
     let mechanism = wheels(0.015, 0.0, "", "");
