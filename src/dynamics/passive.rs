@@ -77,6 +77,8 @@ pub struct Passive {
     pub bounds: [f64; 2],
     /// Gap, or speed, that is rounding \[m or rad, or those per second\].
     pub rounding: f64,
+    /// Force of an elastic stop that is rounding: that of its spring in such a gap \[N or N m\].
+    pub force_rounding: f64,
 }
 
 impl Passive {
@@ -88,6 +90,7 @@ impl Passive {
         force: 0.0,
         bounds: [f64::NEG_INFINITY, f64::INFINITY],
         rounding: 0.0,
+        force_rounding: 0.0,
     };
 
     /// Returns the mode of an elastic stop.
@@ -327,6 +330,7 @@ impl PassiveForces {
                     to.bounds = stop.limits(parameters);
                     let push = stop.push(&value, [to.coordinate.value, rate]);
                     to.force = push.map_or(0.0, |(push, sign)| push * sign);
+                    to.force_rounding = stop.stiffness.value(parameters) * to.rounding;
                 }
             }
         }

@@ -60,7 +60,7 @@ impl PassiveForces {
         let force = |value: f64| Function {
             value,
             rate: None,
-            rounding: 0.0,
+            rounding: at.force_rounding,
         };
         let place = |sign: f64, limit: f64| Function {
             value: sign * (value - limit),
@@ -190,9 +190,13 @@ impl Function {
 
     /// Returns how far below zero the function may be at an event.
     fn slack(&self, after: &Self, scale: f64) -> f64 {
+        let rounding = self.rounding.max(after.rounding);
         match self.rate {
-            Some(_) => self.rounding.max(after.rounding),
-            None => FORCE_ROUNDING * scale.max(self.value.abs()).max(after.value.abs()),
+            Some(_) => rounding,
+            None => {
+                let largest = scale.max(self.value.abs()).max(after.value.abs());
+                rounding.max(FORCE_ROUNDING * largest)
+            }
         }
     }
 

@@ -234,8 +234,15 @@ fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unread
             force,
             bounds,
             rounding,
+            force_rounding,
         } = at;
-        let reals = [anchor, &mut coordinate.value, force, rounding];
+        let reals = [
+            anchor,
+            &mut coordinate.value,
+            force,
+            rounding,
+            force_rounding,
+        ];
         let reals = reals.into_iter().chain(&mut coordinate.derivatives);
         codec.each(reals.chain(bounds), Codec::real)?;
     }
