@@ -24,8 +24,8 @@ const SHORT_OF_END: f64 = 1e-4;
 /// Distance of a held coordinate from its place at which a host's integration is corrected, in gaps that
 /// are rounding: 1e-10 radians or sizes of the mechanism.
 const DRIFT: f64 = 1e4;
-/// Events in one call, far more than a motion has between two rows of a table.
-const MOST_EVENTS: usize = 100_000;
+/// Instants of events in one call, far more than a motion has between two rows of a table.
+const MOST_EVENTS: u32 = 20_000;
 
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
 ///
@@ -421,7 +421,7 @@ impl FreeMotion {
         let mut end_of_curve = None;
         let start = self.integrator.state().t;
         let resolution = AT_END * start.abs().max((until - start).abs());
-        let events = self.events.len();
+        let mut events = 0;
         loop {
             let now = self.integrator.state().t;
             if now.to_bits() == until.to_bits() {
@@ -452,7 +452,8 @@ impl FreeMotion {
                     if ends_at_event {
                         return Ok(());
                     }
-                    if self.events.len() - events > MOST_EVENTS {
+                    events += 1;
+                    if events > MOST_EVENTS {
                         return Err(Error::TooManyEvents {
                             time: solver.pose().time,
                         });

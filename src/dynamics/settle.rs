@@ -522,6 +522,7 @@ impl Equations {
         (time, x): (f64, &[f64]),
         before: &[Mode],
     ) -> Result<(), Error> {
+        let (mut decided, mut reconsidered) = (Vec::new(), Vec::new());
         loop {
             let contacts: Vec<Contact> = self
                 .contacts()
@@ -539,23 +540,46 @@ impl Equations {
                 .iter()
                 .map(|&k| self.point.passive[k].coordinate.second());
             let accelerations: Vec<f64> = of_contacts.chain(of_frictions).collect();
-            let (forces, _) = self.press(solver, &contacts, &frictions, &accelerations)?;
+            let (forces, columns) = self.press(solver, &contacts, &frictions, &accelerations)?;
             let (of_contacts, of_frictions) = forces.as_slice().split_at(contacts.len());
-            let mut slides = false;
-            for (&k, &force) in frictions.iter().zip(of_frictions) {
+            // One begins to slide at a time, the one that does so with most energy: it exerts less then,
+            // and others may stick.
+            let motion = &columns * &forces;
+            let eagerness = |place: usize| {
+                let (column, first) = (columns.column(place), accelerations[place]);
+                (first + column.dot(&motion)).abs() / column.norm()
+            };
+            let at_limit = frictions.iter().zip(of_frictions).enumerate();
+            let at_limit =
+                at_limit.filter(|(_, (k, force))| force.abs() >= self.most_sticking(**k));
+            let slides = at_limit.max_by(|(a, _), (b, _)| {
+                let [a, b] = [a, b].map(|place| eagerness(contacts.len() + place));
+                a.total_cmp(&b)
+            });
+            if let Some((_, (&k, &force))) = slides {
                 let at = &self.point.passive[k];
-                if force.abs() < self.most_sticking(k) {
-                    continue;
-                }
                 // At its limit friction pushes against the motion that begins.
                 let grows = match at.bounds[0] < at.bounds[1] {
                     true => force < 0.0,
                     false => at.coordinate.second() > 0.0,
                 };
                 self.passive.modes[k] = if grows { Mode::Growing } else { Mode::Falling };
-                slides = true;
+                decided.push(k);
+                self.evaluate(solver, given, time, x)?;
+                continue;
             }
-            if slides {
+            // What others have done since may hold one back that was to slide.
+            let turns_back = |k: &usize| {
+                let at = &self.point.passive[*k];
+                let column = self.passive.columns(&[*k], &self.freedoms, self.factor());
+                let second = at.coordinate.second() + column.column(0).dot(&motion);
+                self.passive.modes[*k].sign() * second < -SLOW * at.rounding
+                    && !reconsidered.contains(k)
+            };
+            if let Some(place) = decided.iter().position(turns_back) {
+                let k = decided.swap_remove(place);
+                reconsidered.push(k);
+                self.passive.modes[k] = Mode::Free;
                 self.evaluate(solver, given, time, x)?;
                 continue;
             }

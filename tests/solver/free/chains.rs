@@ -142,3 +142,75 @@ fn chains_keep_their_balances() {
         assert!(begun.elapsed().as_secs() < 60, "case {case}\n{text}");
     }
 }
+
+/// Two joints come to rest at once: one slides with less than it takes to move it, and the other sticks.
+const GIVES_WAY: &str = r#"
+format = 1
+name = "chain"
+[ground.markers]
+O = [0, 0]
+[bodies.slider]
+mass = 2.42
+markers = { O = [0, 0] }
+[bodies.rod0]
+mass = 0.75
+inertia = 0.0197
+center = [0.242, 0]
+markers = { A = [0, 0], B = [0.485, 0] }
+[bodies.rod1]
+mass = 1.47
+inertia = 0.0056
+center = [0.350, 0]
+markers = { A = [0, 0], B = [0.701, 0] }
+[joints]
+guide = { type = "translational", markers = ["ground.O", "slider.O"] }
+pin0 = { type = "revolute", markers = ["slider.O", "rod0.A"] }
+pin1 = { type = "revolute", markers = ["rod0.B", "rod1.A"] }
+[freedoms]
+way = { coordinate = "x", markers = ["ground.O", "slider.O"], start = 0, velocity = -0.55 }
+turn0 = { coordinate = "angle", markers = ["slider.O", "rod0.A"], start = 0.052, velocity = -0.45 }
+turn1 = { coordinate = "angle", markers = ["rod0.B", "rod1.A"], start = -0.174, velocity = -0.74 }
+[stops]
+stop_way = { of = "way", min = -0.242, max = 0.454, stiffness = 1163.6, damping = 0.50 }
+[friction]
+f_way = { of = "way", force = 1.919, static = 2.8546 }
+f_turn0 = { of = "turn0", force = 1.832, static = 2.6395 }
+f_turn1 = { of = "turn1", force = 0.744, static = 0.8418 }
+"#;
+
+/// All comes to rest, with velocities whose squares are no numbers.
+const RESTS: &str = r#"
+format = 1
+name = "chain"
+[ground.markers]
+O = [0, 0]
+[bodies.slider]
+mass = 1.94
+markers = { O = [0, 0] }
+[bodies.rod0]
+mass = 0.62
+inertia = 0.0225
+center = [0.300, 0]
+markers = { A = [0, 0], B = [0.599, 0] }
+[joints]
+guide = { type = "translational", markers = ["ground.O", "slider.O"] }
+pin0 = { type = "revolute", markers = ["slider.O", "rod0.A"] }
+[freedoms]
+way = { coordinate = "x", markers = ["ground.O", "slider.O"], start = 0, velocity = -0.47 }
+turn0 = { coordinate = "angle", markers = ["slider.O", "rod0.A"], start = -0.099, velocity = 1.76 }
+[stops]
+stop_turn0 = { of = "turn0", min = -0.472, max = 0.417, restitution = 0.57 }
+[friction]
+f_way = { of = "way", force = 1.795, static = 2.2138 }
+f_turn0 = { joint = "pin0", radius = 0.020, coefficient = 0.256, static = 0.3425 }
+"#;
+
+#[test]
+fn chains_go_on_and_rest() {
+    for text in [GIVES_WAY, RESTS] {
+        let mut run = Run::new(&parse(text), 1e-9, Fed::default());
+        run.to(2.0);
+        assert!(run.free.events().count() < 100);
+        assert!(run.energy_error < 1e-9, "{}", run.energy_error);
+    }
+}
