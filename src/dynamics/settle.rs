@@ -19,7 +19,9 @@ const LOWEST_FALL: f64 = 1.0 / 64.0;
 /// Impacts at one instant, far more than several contacts make.
 const MOST_IMPACTS: usize = 100;
 /// Choices of what sticks, far more than it takes until they agree with the reactions.
-const MOST_CHOICES: usize = 50;
+const MOST_CHOICES: usize = 10;
+/// Combinations of modes that are tried where no choice agrees: those of six forces.
+const MOST_TRIED: usize = 729;
 /// A speed of so many roundings may be rest: 1e-8 radians or sizes of the mechanism per second. The
 /// instant of an event is not known much better.
 const SLOW: f64 = 1e6;
@@ -463,27 +465,113 @@ impl Equations {
         x: &[f64],
         before: &[Mode],
     ) -> Result<(), Error> {
-        let Some((first, _)) = self.passive.bearings.first() else {
-            return self.choose_for(solver, given, (time, x), before);
-        };
-        let force = self.passive.list[*first].index;
         let released = self.passive.modes.clone();
-        for _ in 0..MOST_CHOICES {
+        let choices = if self.passive.bearings.is_empty() {
+            1
+        } else {
+            MOST_CHOICES
+        };
+        for _ in 0..choices {
             self.passive.modes.clone_from(&released);
             self.passive.joint_friction.freeze(true);
             let chosen = self.evaluate(solver, given, time, x);
-            let chosen = chosen.and_then(|()| self.choose_for(solver, given, (time, x), before));
+            let chosen = chosen.and_then(|()| self.choose_for(solver, given, (time, x)));
             self.passive.joint_friction.freeze(false);
             chosen?;
             self.evaluate(solver, given, time, x)?;
-            if (0..released.len()).all(|k| released[k] != Mode::Free || self.agrees(k)) {
+            if self.all_agree(&released) {
+                self.set_anchors(before);
                 return Ok(());
             }
         }
-        Err(Error::Kinematics(kinematics::Error::NoForce {
-            force: solver.mechanism().forces[force].name.clone(),
-            reason: "neither sticks nor slides here: the reactions that it makes agree with neither",
-        }))
+        let chosen = self.passive.modes.clone();
+        if !self.try_all(solver, given, (time, x), &released) {
+            if let Some((first, _)) = self.passive.bearings.first() {
+                let force = self.passive.list[*first].index;
+                return Err(Error::Kinematics(kinematics::Error::NoForce {
+                    force: solver.mechanism().forces[force].name.clone(),
+                    reason: "neither sticks nor slides here: the reactions that it makes agree with neither",
+                }));
+            }
+            self.passive.modes = chosen;
+            self.evaluate(solver, given, time, x)?;
+        }
+        self.set_anchors(before);
+        Ok(())
+    }
+
+    /// Tries all modes of what was released, those that hold first, and returns whether some agree.
+    fn try_all(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        (time, x): (f64, &[f64]),
+        released: &[Mode],
+    ) -> bool {
+        self.passive.modes.copy_from_slice(released);
+        if self.evaluate(solver, given, time, x).is_err() {
+            return false;
+        }
+        let of_contacts = self.closed_contacts().into_iter();
+        let of_contacts =
+            of_contacts.map(|Contact { force, mode }| (force, vec![mode, Mode::Free]));
+        let sliding = vec![Mode::Sticking, Mode::Growing, Mode::Falling];
+        let of_frictions = self.undecided().into_iter().map(|k| (k, sliding.clone()));
+        let options: Vec<(usize, Vec<Mode>)> = of_contacts.chain(of_frictions).collect();
+        let count = options.iter().map(|(_, modes)| modes.len()).product();
+        for choice in 0..count {
+            if choice >= MOST_TRIED {
+                return false;
+            }
+            let mut rest = choice;
+            for (k, modes) in &options {
+                self.passive.modes[*k] = modes[rest % modes.len()];
+                rest /= modes.len();
+            }
+            if self.evaluate(solver, given, time, x).is_ok() && self.all_agree(released) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Returns whether all that was released has a mode that agrees with the motion.
+    fn all_agree(&self, released: &[Mode]) -> bool {
+        (0..released.len()).all(|k| released[k] != Mode::Free || self.agrees(k))
+    }
+
+    /// Returns the contacts that do not open.
+    fn closed_contacts(&self) -> Vec<Contact> {
+        let mut contacts = self.contacts();
+        contacts.retain(|contact| self.opening(*contact)[0] <= self.resting_speed(*contact));
+        contacts
+    }
+
+    /// Returns the friction that neither sticks nor slides yet.
+    fn undecided(&self) -> Vec<usize> {
+        let undecided = |k: &usize| {
+            let is_friction = matches!(self.passive.list[*k].cause, Cause::Friction(_));
+            is_friction && !self.passive.is_driven[*k] && self.passive.modes[*k] == Mode::Free
+        };
+        (0..self.passive.list.len()).filter(undecided).collect()
+    }
+
+    /// Notes the values at which coordinates are held.
+    fn set_anchors(&mut self, before: &[Mode]) {
+        for (k, before) in before.iter().enumerate() {
+            let at = &self.point.passive[k];
+            let value = at.coordinate.value;
+            // A driver that jumps takes along what sticks.
+            let is_there = (value - self.passive.anchors[k]).abs() <= SLOW * at.rounding;
+            match self.passive.modes[k] {
+                Mode::AtMin => self.passive.anchors[k] = at.bounds[0],
+                Mode::AtMax => self.passive.anchors[k] = at.bounds[1],
+                Mode::Sticking if *before != Mode::Sticking || !is_there => {
+                    self.passive.anchors[k] = value;
+                }
+                _ => {}
+            }
+        }
     }
 
     /// Returns whether the force of a passive force, or the acceleration of its coordinate, is one that
@@ -520,21 +608,11 @@ impl Equations {
         solver: &mut Solver,
         given: &impl Given,
         (time, x): (f64, &[f64]),
-        before: &[Mode],
     ) -> Result<(), Error> {
         let (mut decided, mut reconsidered) = (Vec::new(), Vec::new());
         loop {
-            let contacts: Vec<Contact> = self
-                .contacts()
-                .into_iter()
-                .filter(|contact| self.opening(*contact)[0] <= self.resting_speed(*contact))
-                .collect();
-            let undecided = |k: &usize| {
-                let is_friction = matches!(self.passive.list[*k].cause, Cause::Friction(_));
-                let is_driven = self.passive.is_driven[*k];
-                is_friction && !is_driven && self.passive.modes[*k] == Mode::Free
-            };
-            let frictions: Vec<usize> = (0..before.len()).filter(undecided).collect();
+            let contacts = self.closed_contacts();
+            let frictions = self.undecided();
             let of_contacts = contacts.iter().map(|contact| self.opening(*contact)[1]);
             let of_frictions = frictions
                 .iter()
@@ -568,7 +646,7 @@ impl Equations {
                 self.evaluate(solver, given, time, x)?;
                 continue;
             }
-            // What others have done since may hold one back that was to slide.
+            // Others that slide since may hold one back.
             let turns_back = |k: &usize| {
                 let at = &self.point.passive[*k];
                 let column = self.passive.columns(&[*k], &self.freedoms, self.factor());
@@ -585,21 +663,11 @@ impl Equations {
             }
             for (contact, &force) in contacts.iter().zip(of_contacts) {
                 if force > 0.0 {
-                    let side = usize::from(contact.mode == Mode::AtMax);
                     self.passive.modes[contact.force] = contact.mode;
-                    self.passive.anchors[contact.force] =
-                        self.point.passive[contact.force].bounds[side];
                 }
             }
             for k in frictions {
                 self.passive.modes[k] = Mode::Sticking;
-                let at = &self.point.passive[k];
-                let value = at.coordinate.value;
-                // A driver that jumps takes along what sticks.
-                let is_there = (value - self.passive.anchors[k]).abs() <= SLOW * at.rounding;
-                if before[k] != Mode::Sticking || !is_there {
-                    self.passive.anchors[k] = value;
-                }
             }
             return Ok(());
         }

@@ -59,7 +59,7 @@ fn the_rod_presses_the_slider_on_its_guide() {
     let mechanism = slider_crank(angle, load, rail);
     let sine = 0.1 * angle.sin() / 0.3;
     let cosine = (1.0 - sine * sine).sqrt();
-    // So slowly the mass makes no difference; the slider moves towards the crank as the angle grows.
+    // The mass makes no difference so slowly; the slider moves towards the crank as the angle grows.
     for velocity in [1e-9, -1e-9] {
         let solution = solved(&mechanism, velocity).expect("it does not jam");
         let direction = -velocity.signum();
