@@ -73,6 +73,7 @@ pub(super) struct Film<'a> {
     /// The placements of all frames at each pose.
     pub(super) placements: Vec<Vec<Placement>>,
     /// Duration of a round \[s\].
+    #[cfg(feature = "gif")]
     pub(super) duration: f64,
     /// Attributes of every animation.
     clock: String,
@@ -103,6 +104,7 @@ impl<'a> Film<'a> {
             stage,
             poses,
             placements,
+            #[cfg(feature = "gif")]
             duration,
             clock: format!("dur=\"{}s\" repeatCount=\"indefinite\"", number(duration)),
         }
