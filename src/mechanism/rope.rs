@@ -1,6 +1,6 @@
 //! Ropes over points and pulleys.
 
-use super::{Expression, JointKind, MarkerId, Mechanism, ParameterId, Play};
+use super::{Expression, JointKind, MarkerId, Mechanism, Play};
 
 /// Most moving bodies that one rope runs over: a row of the Jacobian holds the entries of so many.
 pub(crate) const MOST_BODIES: usize = 8;
@@ -27,9 +27,10 @@ pub struct RopePoint {
     pub pulley: Option<Pulley>,
 }
 
+#[cfg(feature = "drawing")]
 impl RopePoint {
     /// Returns the radius of the pulley \[m\], positive on the left of the rope; zero without one.
-    pub(crate) fn radius(&self, parameter: &impl Fn(ParameterId) -> f64) -> f64 {
+    pub(crate) fn radius(&self, parameter: &impl Fn(super::ParameterId) -> f64) -> f64 {
         let pulley = self.pulley.as_ref();
         pulley.map_or(0.0, |pulley| {
             pulley.side.sign() * pulley.radius.evaluate(parameter, 0.0)
