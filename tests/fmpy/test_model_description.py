@@ -125,6 +125,10 @@ def expected_forces(file):
         if force_has_size(table):
             for suffix, unit in force_units(table).items():
                 yield f"{name}.{suffix}", unit
+    for name, table in file.get("friction", {}).items():
+        # Friction in a pin is a torque.
+        of_pin = "joint" in table and file["joints"][table["joint"]]["type"] == "revolute"
+        yield f"{name}.effort", "N.m" if of_pin else "N"
     yield "energy.kinetic", "J"
     yield "energy.potential", "J"
 
