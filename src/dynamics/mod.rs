@@ -18,12 +18,14 @@
 //! | `watch` | the search for the instants at which modes end |
 //! | `equations` | the right-hand side |
 //! | `settle` | events: impacts, and the modes after them |
+//! | `choose` | the choice of what is held after an event |
 //! | `variations` | the changes of a motion along directions |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
 //! | `linear` | its linearisation at a pose; static equilibrium |
 
 mod bounded;
 mod charts;
+mod choose;
 mod equations;
 mod error;
 mod given;

@@ -8,8 +8,7 @@ use super::error::Error;
 use super::given::Given;
 use super::passive::{Cause, Mode};
 use super::triangular::ascend;
-use super::watch::FORCE_ROUNDING;
-use crate::kinematics::{self, Solver, StopLimit};
+use crate::kinematics::{Solver, StopLimit};
 use crate::mechanism::{Force, JointKind, Load, Mechanism, Order, PassiveCause, fixed, shown};
 
 /// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
@@ -18,13 +17,9 @@ const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
 const LOWEST_FALL: f64 = 1.0 / 64.0;
 /// Impacts at one instant, far more than several contacts make.
 const MOST_IMPACTS: usize = 100;
-/// Choices of what sticks, far more than it takes until they agree with the reactions.
-const MOST_CHOICES: usize = 10;
-/// Combinations of modes that are tried where no choice agrees: those of six forces.
-const MOST_TRIED: usize = 729;
 /// A speed of so many roundings may be rest: 1e-8 radians or sizes of the mechanism per second. The
 /// instant of an event is not known much better.
-const SLOW: f64 = 1e6;
+pub(super) const SLOW: f64 = 1e6;
 /// Corrections of held coordinates: two suffice where they are nearly linear, as over a step; a start may
 /// be farther away.
 const MOST_CORRECTIONS: usize = 20;
@@ -102,10 +97,10 @@ impl Event {
 
 /// A stop that something touches, on one side.
 #[derive(Clone, Copy, Debug)]
-struct Contact {
+pub(super) struct Contact {
     /// Index of the passive force.
-    force: usize,
-    mode: Mode,
+    pub(super) force: usize,
+    pub(super) mode: Mode,
 }
 
 /// A contact at an impact.
@@ -266,7 +261,7 @@ impl Equations {
     }
 
     /// Returns the contacts at the present point.
-    fn contacts(&self) -> Vec<Contact> {
+    pub(super) fn contacts(&self) -> Vec<Contact> {
         let passive = self.point.passive.iter().enumerate();
         let sides = passive.flat_map(|(force, at)| {
             let value = at.coordinate.value;
@@ -282,14 +277,14 @@ impl Equations {
     }
 
     /// Returns the speed at which a contact opens, negative where it closes, and the acceleration.
-    fn opening(&self, Contact { force, mode }: Contact) -> [f64; 2] {
+    pub(super) fn opening(&self, Contact { force, mode }: Contact) -> [f64; 2] {
         let rates = self.point.passive[force].coordinate.derivatives;
         rates.map(|rate| mode.sign() * rate)
     }
 
     /// Returns the speed of a contact that counts as rest: that of the lowest fall, or of as low a rise,
     /// as friction and other contacts may turn the acceleration round.
-    fn resting_speed(&self, contact: Contact) -> f64 {
+    pub(super) fn resting_speed(&self, contact: Contact) -> f64 {
         let rounding = self.point.passive[contact.force].rounding;
         let [_, acceleration] = self.opening(contact);
         rounding + (2.0 * LOWEST_FALL * rounding * acceleration.abs()).sqrt()
@@ -424,7 +419,7 @@ impl Equations {
     /// Finds the forces or impulses of contacts, which push, and of friction between its bounds, for these
     /// accelerations or rates without them. Also returns L⁻¹ (∂c/∂u)ᵀ by columns, with c the way by which
     /// a contact opens.
-    fn press(
+    pub(super) fn press(
         &self,
         solver: &Solver,
         contacts: &[Contact],
@@ -447,229 +442,5 @@ impl Equations {
         let holds = frictions.iter().map(|&k| self.point.passive[k].bounds);
         let bounds: Vec<[f64; 2]> = pushes.chain(holds).collect();
         Ok((bounded::solve(&compliance, rates, &bounds), columns))
-    }
-
-    /// Chooses which contacts stay closed and which friction sticks, by the accelerations.
-    ///
-    /// The bounds of friction in joints follow from the reactions, and these from the choice: it is made
-    /// again until it agrees with them.
-    ///
-    /// # Errors
-    ///
-    /// [`NoForce`](crate::kinematics::Error::NoForce) if it never does.
-    fn choose(
-        &mut self,
-        solver: &mut Solver,
-        given: &impl Given,
-        time: f64,
-        x: &[f64],
-        before: &[Mode],
-    ) -> Result<(), Error> {
-        let released = self.passive.modes.clone();
-        let choices = if self.passive.bearings.is_empty() {
-            1
-        } else {
-            MOST_CHOICES
-        };
-        for _ in 0..choices {
-            self.passive.modes.clone_from(&released);
-            self.passive.joint_friction.freeze(true);
-            let chosen = self.evaluate(solver, given, time, x);
-            let chosen = chosen.and_then(|()| self.choose_for(solver, given, (time, x)));
-            self.passive.joint_friction.freeze(false);
-            chosen?;
-            self.evaluate(solver, given, time, x)?;
-            if self.all_agree(&released) {
-                self.set_anchors(before);
-                return Ok(());
-            }
-        }
-        let chosen = self.passive.modes.clone();
-        if !self.try_all(solver, given, (time, x), &released) {
-            if let Some((first, _)) = self.passive.bearings.first() {
-                let force = self.passive.list[*first].index;
-                return Err(Error::Kinematics(kinematics::Error::NoForce {
-                    force: solver.mechanism().forces[force].name.clone(),
-                    reason: "neither sticks nor slides here: the reactions that it makes agree with neither",
-                }));
-            }
-            self.passive.modes = chosen;
-            self.evaluate(solver, given, time, x)?;
-        }
-        self.set_anchors(before);
-        Ok(())
-    }
-
-    /// Tries all modes of what was released, those that hold first, and returns whether some agree.
-    fn try_all(
-        &mut self,
-        solver: &mut Solver,
-        given: &impl Given,
-        (time, x): (f64, &[f64]),
-        released: &[Mode],
-    ) -> bool {
-        self.passive.modes.copy_from_slice(released);
-        if self.evaluate(solver, given, time, x).is_err() {
-            return false;
-        }
-        let of_contacts = self.closed_contacts().into_iter();
-        let of_contacts =
-            of_contacts.map(|Contact { force, mode }| (force, vec![mode, Mode::Free]));
-        let sliding = vec![Mode::Sticking, Mode::Growing, Mode::Falling];
-        let of_frictions = self.undecided().into_iter().map(|k| (k, sliding.clone()));
-        let options: Vec<(usize, Vec<Mode>)> = of_contacts.chain(of_frictions).collect();
-        let count = options.iter().map(|(_, modes)| modes.len()).product();
-        for choice in 0..count {
-            if choice >= MOST_TRIED {
-                return false;
-            }
-            let mut rest = choice;
-            for (k, modes) in &options {
-                self.passive.modes[*k] = modes[rest % modes.len()];
-                rest /= modes.len();
-            }
-            if self.evaluate(solver, given, time, x).is_ok() && self.all_agree(released) {
-                return true;
-            }
-        }
-        false
-    }
-
-    /// Returns whether all that was released has a mode that agrees with the motion.
-    fn all_agree(&self, released: &[Mode]) -> bool {
-        (0..released.len()).all(|k| released[k] != Mode::Free || self.agrees(k))
-    }
-
-    /// Returns the contacts that do not open.
-    fn closed_contacts(&self) -> Vec<Contact> {
-        let mut contacts = self.contacts();
-        contacts.retain(|contact| self.opening(*contact)[0] <= self.resting_speed(*contact));
-        contacts
-    }
-
-    /// Returns the friction that neither sticks nor slides yet.
-    fn undecided(&self) -> Vec<usize> {
-        let undecided = |k: &usize| {
-            let is_friction = matches!(self.passive.list[*k].cause, Cause::Friction(_));
-            is_friction && !self.passive.is_driven[*k] && self.passive.modes[*k] == Mode::Free
-        };
-        (0..self.passive.list.len()).filter(undecided).collect()
-    }
-
-    /// Notes the values at which coordinates are held.
-    fn set_anchors(&mut self, before: &[Mode]) {
-        for (k, before) in before.iter().enumerate() {
-            let at = &self.point.passive[k];
-            let value = at.coordinate.value;
-            // A driver that jumps takes along what sticks.
-            let is_there = (value - self.passive.anchors[k]).abs() <= SLOW * at.rounding;
-            match self.passive.modes[k] {
-                Mode::AtMin => self.passive.anchors[k] = at.bounds[0],
-                Mode::AtMax => self.passive.anchors[k] = at.bounds[1],
-                Mode::Sticking if *before != Mode::Sticking || !is_there => {
-                    self.passive.anchors[k] = value;
-                }
-                _ => {}
-            }
-        }
-    }
-
-    /// Returns whether the force of a passive force, or the acceleration of its coordinate, is one that
-    /// belongs to its mode.
-    fn agrees(&self, k: usize) -> bool {
-        let at = &self.point.passive[k];
-        match self.passive.modes[k] {
-            _ if self.passive.is_driven[k] => true,
-            Mode::Sticking => at.force.abs() < self.most_sticking(k),
-            mode @ (Mode::Growing | Mode::Falling) => {
-                mode.sign() * at.coordinate.second() >= -SLOW * at.rounding
-            }
-            mode if self.passive.is_held(k) => mode.sign() * at.force >= 0.0,
-            _ => {
-                let mut contacts = self.contacts().into_iter();
-                let closes = |contact: &Contact| {
-                    let [speed, acceleration] = self.opening(*contact);
-                    speed <= self.resting_speed(*contact) && acceleration < -SLOW * at.rounding
-                };
-                !contacts.any(|contact| contact.force == k && closes(&contact))
-            }
-        }
-    }
-
-    /// Returns the force up to which friction sticks; at its limit it does not, where the watch sees that
-    /// sticking ends.
-    fn most_sticking(&self, k: usize) -> f64 {
-        (1.0 - 4.0 * FORCE_ROUNDING) * self.point.passive[k].bounds[1]
-    }
-
-    /// Chooses, for friction in joints with the reactions at hand.
-    fn choose_for(
-        &mut self,
-        solver: &mut Solver,
-        given: &impl Given,
-        (time, x): (f64, &[f64]),
-    ) -> Result<(), Error> {
-        let (mut decided, mut reconsidered) = (Vec::new(), Vec::new());
-        loop {
-            let contacts = self.closed_contacts();
-            let frictions = self.undecided();
-            let of_contacts = contacts.iter().map(|contact| self.opening(*contact)[1]);
-            let of_frictions = frictions
-                .iter()
-                .map(|&k| self.point.passive[k].coordinate.second());
-            let accelerations: Vec<f64> = of_contacts.chain(of_frictions).collect();
-            let (forces, columns) = self.press(solver, &contacts, &frictions, &accelerations)?;
-            let (of_contacts, of_frictions) = forces.as_slice().split_at(contacts.len());
-            // One begins to slide at a time, the one that does so with most energy: it exerts less then,
-            // and others may stick.
-            let motion = &columns * &forces;
-            let eagerness = |place: usize| {
-                let (column, first) = (columns.column(place), accelerations[place]);
-                (first + column.dot(&motion)).abs() / column.norm()
-            };
-            let at_limit = frictions.iter().zip(of_frictions).enumerate();
-            let at_limit =
-                at_limit.filter(|(_, (k, force))| force.abs() >= self.most_sticking(**k));
-            let slides = at_limit.max_by(|(a, _), (b, _)| {
-                let [a, b] = [a, b].map(|place| eagerness(contacts.len() + place));
-                a.total_cmp(&b)
-            });
-            if let Some((_, (&k, &force))) = slides {
-                let at = &self.point.passive[k];
-                // At its limit friction pushes against the motion that begins.
-                let grows = match at.bounds[0] < at.bounds[1] {
-                    true => force < 0.0,
-                    false => at.coordinate.second() > 0.0,
-                };
-                self.passive.modes[k] = if grows { Mode::Growing } else { Mode::Falling };
-                decided.push(k);
-                self.evaluate(solver, given, time, x)?;
-                continue;
-            }
-            // Others that slide since may hold one back.
-            let turns_back = |k: &usize| {
-                let at = &self.point.passive[*k];
-                let column = self.passive.columns(&[*k], &self.freedoms, self.factor());
-                let second = at.coordinate.second() + column.column(0).dot(&motion);
-                self.passive.modes[*k].sign() * second < -SLOW * at.rounding
-                    && !reconsidered.contains(k)
-            };
-            if let Some(place) = decided.iter().position(turns_back) {
-                let k = decided.swap_remove(place);
-                reconsidered.push(k);
-                self.passive.modes[k] = Mode::Free;
-                self.evaluate(solver, given, time, x)?;
-                continue;
-            }
-            for (contact, &force) in contacts.iter().zip(of_contacts) {
-                if force > 0.0 {
-                    self.passive.modes[contact.force] = contact.mode;
-                }
-            }
-            for k in frictions {
-                self.passive.modes[k] = Mode::Sticking;
-            }
-            return Ok(());
-        }
     }
 }

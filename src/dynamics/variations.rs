@@ -4,9 +4,13 @@
 //! They are integrated beside the motion, with its steps, and so are the exact derivatives of what the
 //! integrator computes.
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::error::Error;
-use crate::kinematics::{Direction, Rates, Solver};
+use super::given::Given;
+use super::triangular::{ascend, descend};
+use crate::kinematics::{Direction, ForceQuantity, KnownMotion, Rates, Solver};
 use crate::mechanism::Jet;
 
 impl Equations {
@@ -71,5 +75,150 @@ impl Equations {
             }
         }
         Ok(())
+    }
+
+    /// Completes a direction by the changes of the freedoms' accelerations, for which their efforts
+    /// stay zero: J δü = −δeffort, and `loads` by those of passive forces. The point is that at which
+    /// accelerations were solved last, and `rates` are those of q there; `loads` are the changes of the
+    /// inputs of forces.
+    pub(super) fn complete(
+        &mut self,
+        solver: &mut Solver,
+        rates: &Rates,
+        direction: &mut Direction,
+        loads: &mut [f64],
+    ) -> Result<(), Error> {
+        self.complete_with(solver, rates, direction, loads, &[])?;
+        if self.passive.bearings.is_empty() {
+            return Ok(());
+        }
+        let motion = KnownMotion {
+            rates,
+            driver_rates: &self.point.drivers,
+            inputs: &self.point.loads,
+        };
+        let changes = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
+        let joints = self.passive.bearings.iter();
+        let reactions: Vec<_> = joints.map(|(_, joint)| changes.reaction(*joint)).collect();
+        let along = solver.sensitivity(rates, &self.point.drivers, direction)?;
+        let sliding = self.passive.joint_changes(&along, &reactions).to_vec();
+        self.complete_with(solver, rates, direction, loads, &sliding)
+    }
+
+    /// Completes a direction for these changes of the friction in joints that slide, none if empty.
+    fn complete_with(
+        &mut self,
+        solver: &mut Solver,
+        rates: &Rates,
+        direction: &mut Direction,
+        loads: &mut [f64],
+        sliding: &[f64],
+    ) -> Result<(), Error> {
+        for freedom in &self.freedoms {
+            direction.drivers[freedom.index()].derivatives[1] = 0.0;
+        }
+        let Self {
+            passive,
+            point,
+            forces,
+            factor,
+            accelerations,
+            freedoms,
+            ..
+        } = self;
+        let of_passive = loads.len() - passive.loads();
+        let mut coordinates = Vec::new();
+        if !passive.is_empty() {
+            let sensitivity = solver.sensitivity(rates, &point.drivers, direction)?;
+            coordinates = passive.changes(&sensitivity, &mut loads[of_passive..]);
+            for ((k, _), change) in passive.bearings.iter().zip(sliding) {
+                loads[of_passive + k] = *change;
+            }
+        }
+        let motion = KnownMotion {
+            rates,
+            driver_rates: &point.drivers,
+            inputs: &point.loads,
+        };
+        let changes = solver.force_sensitivity(motion, direction, loads, forces)?;
+        for (change, freedom) in accelerations.iter_mut().zip(&*freedoms) {
+            *change = -changes.change(ForceQuantity::Effort(*freedom))?;
+        }
+        descend(factor, accelerations);
+        passive.hold_changes(&coordinates, accelerations, &mut loads[of_passive..]);
+        ascend(factor, accelerations);
+        for (change, freedom) in accelerations.iter().zip(&*freedoms) {
+            direction.drivers[freedom.index()].derivatives[1] = *change;
+        }
+        Ok(())
+    }
+
+    /// Writes the derivatives of accelerations by values, velocities and time at an accepted point.
+    pub(super) fn differentiate(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        (t, x): (f64, &[f64]),
+        jacobian: &mut DMatrix<f64>,
+        dx_dt: &mut [f64],
+    ) -> Result<(), Error> {
+        let count = self.freedoms.len();
+        let mut scratch = vec![0.0; x.len()];
+        self.set_drivers(solver, given, t, x);
+        self.go(solver, t, None)?;
+        self.write(solver, &mut scratch)?;
+        let mut rates = Rates::new(solver.pose().q.len());
+        solver.solve_rates(|driver| self.point.drivers[driver.index()], &mut rates)?;
+        jacobian.fill(0.0);
+        dx_dt.fill(0.0);
+        let mut still = vec![0.0; self.point.loads.len()];
+        for column in 0..2 * count {
+            let mut direction = Direction::zero(solver.mechanism());
+            let state = &mut direction.drivers[self.freedoms[column % count].index()];
+            if column < count {
+                state.value = 1.0;
+            } else {
+                state.derivatives[0] = 1.0;
+                jacobian[(column - count, column)] = 1.0;
+            }
+            self.complete(solver, &rates, &mut direction, &mut still)?;
+            for (row, change) in self.accelerations.iter().enumerate() {
+                jacobian[(count + row, column)] = *change;
+            }
+        }
+        let mut direction = Direction::zero(solver.mechanism());
+        let mut loads = self.drift(solver, given, t, &mut direction);
+        self.complete(solver, &rates, &mut direction, &mut loads)?;
+        dx_dt[count..2 * count].copy_from_slice(&self.accelerations);
+        Ok(())
+    }
+
+    /// Sets a direction to the changes in time of all that is given, and returns those of the inputs
+    /// of forces.
+    fn drift(
+        &self,
+        solver: &Solver,
+        given: &impl Given,
+        t: f64,
+        direction: &mut Direction,
+    ) -> Vec<f64> {
+        /// Part of the time, or of a second, over which loads are differenced: they are polynomials
+        /// of low degree, so that rounding decides.
+        const INCREMENT: f64 = 1e-6;
+        direction.time = 1.0;
+        let definitions = solver.mechanism().drivers.iter().enumerate();
+        for (index, driver) in definitions {
+            if driver.is_given() {
+                let [velocity, acceleration] = self.point.drivers[index].derivatives;
+                direction.drivers[index] = Jet::new(velocity, [acceleration, 0.0]);
+            }
+        }
+        let later = t + INCREMENT * t.abs().max(1.0);
+        let mut loads = self.point.loads.clone();
+        given.loads(later, &mut loads[..self.inputs()]);
+        for (load, now) in loads.iter_mut().zip(&self.point.loads) {
+            *load = (*load - now) / (later - t);
+        }
+        loads
     }
 }
