@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
-use super::passive::{Cause, Mode};
+use super::passive::Mode;
 use super::settle::{Contact, SLOW};
 use super::watch::FORCE_ROUNDING;
 use crate::kinematics::{self, Solver};
@@ -83,11 +83,9 @@ impl Equations {
         let sliding = vec![Mode::Sticking, Mode::Growing, Mode::Falling];
         let of_frictions = self.undecided().into_iter().map(|k| (k, sliding.clone()));
         let options: Vec<(usize, Vec<Mode>)> = of_contacts.chain(of_frictions).collect();
-        let count = options.iter().map(|(_, modes)| modes.len()).product();
-        for choice in 0..count {
-            if choice >= MOST_TRIED {
-                return false;
-            }
+        let counts = options.iter().map(|(_, modes)| modes.len());
+        let count = counts.fold(1, |count: usize, more| count.saturating_mul(more));
+        for choice in 0..count.min(MOST_TRIED) {
             let mut rest = choice;
             for (k, modes) in &options {
                 self.passive.modes[*k] = modes[rest % modes.len()];
@@ -115,7 +113,7 @@ impl Equations {
     /// Returns the friction that neither sticks nor slides yet.
     fn undecided(&self) -> Vec<usize> {
         let undecided = |k: &usize| {
-            let is_friction = matches!(self.passive.list[*k].cause, Cause::Friction(_));
+            let is_friction = self.passive.list[*k].cause.friction().is_some();
             is_friction && !self.passive.is_driven[*k] && self.passive.modes[*k] == Mode::Free
         };
         (0..self.passive.list.len()).filter(undecided).collect()

@@ -402,8 +402,9 @@ impl Equations {
         solver.write_equations(velocity, loads, forces, motion)?;
         *energy = motion.energy;
         passive.begin(solver, freedoms, motion, at);
+        self.prepare(solver)?;
         if self.passive.bearings.is_empty() {
-            self.respond(solver)?;
+            self.respond();
         } else {
             self.solve_joint_friction(solver)?;
         }
@@ -417,7 +418,7 @@ impl Equations {
         let solved = friction.solve(|sizes, reactions| {
             let at = &mut self.point.passive;
             self.passive.slide(sizes, at, &mut self.motion);
-            self.respond(solver)?;
+            self.respond();
             let Point { drivers, loads, .. } = &self.point;
             solver.solve_rates(|driver| drivers[driver.index()], &mut self.rates)?;
             let motion = KnownMotion {
@@ -437,8 +438,8 @@ impl Equations {
     }
 
     /// Solves the accelerations, with the forces that hold, and writes the loads.
-    fn respond(&mut self, solver: &Solver) -> Result<(), Error> {
-        self.solve_accelerations(solver)?;
+    fn respond(&mut self) {
+        self.solve_accelerations();
         let Self {
             passive,
             point,
@@ -454,11 +455,10 @@ impl Equations {
             ..
         } = point;
         if at.is_empty() {
-            return Ok(());
+            return;
         }
         passive.accelerate(at, drivers.iter().map(Jet::second));
         if passive.holds() {
-            passive.prepare(freedoms, factor);
             accelerations.fill(0.0);
             passive.correct(at, Order::Acceleration, accelerations);
             passive.write_holding(at);
@@ -472,24 +472,25 @@ impl Equations {
         for (load, at) in loads[inputs..].iter_mut().zip(&*at) {
             *load = at.force;
         }
-        Ok(())
     }
 
-    /// Solves J ü = −bias for the freedoms, by least squares on √M ∂q/∂u: where J is badly conditioned,
-    /// as with bodies of very different masses, half of its digits are saved.
-    fn solve_accelerations(&mut self, solver: &Solver) -> Result<(), Error> {
+    /// Factorises J, by least squares on √M ∂q/∂u: where J is badly conditioned, as with bodies of very
+    /// different masses, half of its digits are saved. Prepares the forces that hold.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoInertia`] for freedoms that move no mass.
+    fn prepare(&mut self, solver: &Solver) -> Result<(), Error> {
         let Self {
             motion,
             freedoms,
             point,
             columns,
             rest,
-            accelerations,
             ..
         } = self;
         for (place, freedom) in freedoms.iter().enumerate() {
             columns.set_column(place, &motion.weighted.column(freedom.index()));
-            accelerations[place] = motion.applied[freedom.index()];
         }
         rest.copy_from_slice(&motion.weighted_rest);
         let definitions = solver.mechanism().drivers.iter();
@@ -499,6 +500,17 @@ impl Equations {
             }
         }
         self.factorise(solver)?;
+        if self.passive.holds() {
+            self.passive.prepare(&self.freedoms, &self.factor);
+        }
+        Ok(())
+    }
+
+    /// Solves J ü = −bias for the freedoms.
+    fn solve_accelerations(&mut self) {
+        for (acceleration, freedom) in self.accelerations.iter_mut().zip(&self.freedoms) {
+            *acceleration = self.motion.applied[freedom.index()];
+        }
         descend(&self.factor, &mut self.accelerations);
         for (place, acceleration) in self.accelerations.iter_mut().enumerate() {
             *acceleration = -self.along[place] - *acceleration;
@@ -507,7 +519,6 @@ impl Equations {
         for (freedom, acceleration) in self.freedoms.iter().zip(&self.accelerations) {
             self.point.drivers[freedom.index()].derivatives[1] = *acceleration;
         }
-        Ok(())
     }
 
     /// Makes the columns orthonormal by the modified method of Gram and Schmidt, and takes their parts

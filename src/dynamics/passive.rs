@@ -11,8 +11,8 @@ use nalgebra::DMatrix;
 
 use super::triangular::{ascend, descend, factorise};
 
-use crate::kinematics::constraint::{Constraint, of_coordinate};
-use crate::kinematics::{EquationsOfMotion, JointFriction, Sensitivity, Solver};
+use crate::kinematics::constraint::Constraint;
+use crate::kinematics::{EquationsOfMotion, ForceSensitivity, JointFriction, Sensitivity, Solver};
 use crate::mechanism::{
     DriverId, Dual, ElasticStop, FrictionLaw, Jet, Load, Order, ParameterId, PassiveCause,
 };
@@ -158,27 +158,24 @@ pub(super) struct PassiveForce {
 /// Cause of a passive force.
 #[derive(Clone, Debug)]
 pub(super) enum Cause {
-    /// A rigid stop, by its index.
-    Stop(usize),
-    /// The two parts of a joint with play, by its index.
-    Play(usize),
+    /// One without a law.
+    Lawless(PassiveCause),
     /// An elastic stop: its force has a law, which changes where it is touched.
     Elastic(ElasticStop),
-    Friction(Box<FrictionLaw>),
 }
 
 impl Cause {
-    fn of(cause: &PassiveCause) -> Self {
-        match cause {
-            PassiveCause::Stop(stop) => Self::Stop(*stop),
-            PassiveCause::Play(joint) => Self::Play(*joint),
-            PassiveCause::Friction(law) => Self::Friction(law.clone()),
-        }
-    }
-
     /// Returns whether it is a contact that holds its coordinate at a limit.
     pub(super) fn is_contact(&self) -> bool {
-        matches!(self, Self::Stop(_) | Self::Play(_))
+        matches!(self, Self::Lawless(cause) if cause.is_contact())
+    }
+
+    /// Returns the law of friction.
+    pub(super) fn friction(&self) -> Option<&FrictionLaw> {
+        match self {
+            Self::Lawless(PassiveCause::Friction(law)) => Some(law),
+            _ => None,
+        }
     }
 }
 
@@ -188,20 +185,16 @@ impl PassiveForces {
         let forces = mechanism.forces.iter().enumerate();
         let all = forces.filter_map(|(index, force)| {
             let (coordinate, cause) = match &force.load {
-                Load::Passive { coordinate, cause } => (coordinate, Cause::of(cause)),
+                Load::Passive { coordinate, cause } => (coordinate, Cause::Lawless(cause.clone())),
                 Load::Coordinate { coordinate, law } => {
                     let stop = law.as_ref().and_then(|law| law.stop.clone());
                     (coordinate, Cause::Elastic(*stop?))
                 }
                 Load::Marker { .. } => return None,
             };
-            let relation = match &force.load {
-                Load::Passive { cause, .. } => solver.relation_of(coordinate, cause),
-                _ => of_coordinate(coordinate).into(),
-            };
             Some(PassiveForce {
                 index,
-                relation,
+                relation: solver.relation_of(&force.load, coordinate),
                 is_angle: coordinate.kind.is_angle(),
                 cause,
             })
@@ -212,10 +205,7 @@ impl PassiveForces {
         list.extend(elastic);
         let (count, drivers) = (list.len(), mechanism.drivers.len());
         let bearings = list.iter().enumerate().filter_map(|(k, passive)| {
-            let Cause::Friction(law) = &passive.cause else {
-                return None;
-            };
-            Some((k, law.bearing.as_ref()?.joint))
+            Some((k, passive.cause.friction()?.bearing.as_ref()?.joint))
         });
         Self {
             coasting: vec![0.0; count],
@@ -297,7 +287,7 @@ impl PassiveForces {
                 let unit = motion.unit(DriverId(driver));
                 self.rows[(k, driver)] = solver.coordinate(relation, unit).first();
             }
-            if let Cause::Play(joint) = passive.cause {
+            if let Cause::Lawless(PassiveCause::Play(joint)) = passive.cause {
                 to.bounds = solver.limits_of_play(joint);
                 if passive.is_angle {
                     // The bodies' whole turns are no play.
@@ -311,9 +301,11 @@ impl PassiveForces {
             to.force = 0.0;
             let rate = to.coordinate.first();
             match &passive.cause {
-                Cause::Stop(stop) => to.bounds = solver.mechanism().stops[*stop].limits(parameters),
-                Cause::Play(_) => {}
-                Cause::Friction(law) => {
+                Cause::Lawless(PassiveCause::Stop(stop)) => {
+                    to.bounds = solver.mechanism().stops[*stop].limits(parameters);
+                }
+                Cause::Lawless(PassiveCause::Play(_)) => {}
+                Cause::Lawless(PassiveCause::Friction(law)) => {
                     let limit = law.sticking(&value);
                     to.bounds = [-limit, limit];
                     self.is_driven[k] = freedoms.iter().all(|id| self.rows[(k, id.index())] == 0.0);
@@ -472,8 +464,8 @@ impl PassiveForces {
         let coordinates = passive.map(|((k, passive), change)| {
             let rate = sensitivity.rate(&*passive.relation);
             let sign = self.sliding(k, rate.value);
-            *change = match &passive.cause {
-                Cause::Friction(law) if sign != 0.0 && law.bearing.is_none() => {
+            *change = match passive.cause.friction() {
+                Some(law) if sign != 0.0 && law.bearing.is_none() => {
                     let one = Dual::new(1.0, [0.0]);
                     law.along(&parameter, one, rate, sign).first()
                 }
@@ -484,18 +476,18 @@ impl PassiveForces {
         coordinates.collect()
     }
 
-    /// Returns the changes of the friction in joints along a direction, from those of their reactions
-    /// where this friction stays as it is.
+    /// Returns the changes of the friction in joints along a direction, from those of the forces where
+    /// this friction stays as it is.
     pub(super) fn joint_changes(
         &mut self,
         sensitivity: &Sensitivity<'_>,
-        reactions: &[[f64; 3]],
+        forces: &ForceSensitivity,
     ) -> &[f64] {
         let parameter = |id: ParameterId| sensitivity.parameter_value(id);
         let rates = self.bearings.iter();
         let rates = rates.map(|(k, _)| sensitivity.rate(&*self.list[*k].relation));
         let rates: Vec<Dual> = rates.collect();
-        self.joint_friction.changes(&parameter, &rates, reactions)
+        self.joint_friction.changes(&parameter, &rates, forces)
     }
 
     /// Finds the changes of the forces that hold, so that held coordinates do not accelerate, where

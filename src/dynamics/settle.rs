@@ -61,13 +61,7 @@ impl Event {
         let (Load::Passive { coordinate, .. } | Load::Coordinate { coordinate, .. }) = load else {
             unreachable!("events are those of passive forces");
         };
-        let joint = match load {
-            Load::Passive {
-                cause: PassiveCause::Play(joint),
-                ..
-            } => Some(&mechanism.joints[*joint].kind),
-            _ => None,
-        };
+        let joint = load.play().map(|joint| &mechanism.joints[joint].kind);
         let speed = |speed| {
             let unit = coordinate.kind.units()[1].suffix();
             format!("{}{unit}", shown(speed))
@@ -251,10 +245,13 @@ impl Equations {
             let rests = rate.abs() <= SLOW * at.rounding;
             passive.modes[k] = match passive.list[k].cause {
                 Cause::Elastic(_) => at.elastic_mode(),
-                Cause::Friction(_) if passive.is_driven[k] => Mode::Free,
-                Cause::Friction(_) if !rests && rate > 0.0 => Mode::Growing,
-                Cause::Friction(_) if !rests => Mode::Falling,
-                _ => Mode::Free,
+                Cause::Lawless(PassiveCause::Friction(_)) if !rests && !passive.is_driven[k] => {
+                    match rate > 0.0 {
+                        true => Mode::Growing,
+                        false => Mode::Falling,
+                    }
+                }
+                Cause::Lawless(_) => Mode::Free,
             };
         }
         self.evaluate(solver, given, time, x)
@@ -372,12 +369,11 @@ impl Equations {
 
     /// Returns the part of the velocity with which a contact bounces.
     fn restitution(&self, solver: &Solver, force: usize) -> f64 {
-        let force = &solver.mechanism().forces[self.passive.list[force].index];
-        match &force.load {
-            Load::Passive { cause, .. } => {
+        match &self.passive.list[force].cause {
+            Cause::Lawless(cause) => {
                 cause.restitution(solver.mechanism(), &solver.pose().parameters)
             }
-            _ => 0.0,
+            Cause::Elastic(_) => 0.0,
         }
     }
 
@@ -400,7 +396,7 @@ impl Equations {
     /// Returns the error at a stop of a coordinate that no freedom moves.
     fn stop(&self, solver: &Solver, Contact { force, mode }: Contact) -> Error {
         let time = solver.pose().time;
-        let Cause::Stop(stop) = self.passive.list[force].cause else {
+        let Cause::Lawless(PassiveCause::Stop(stop)) = self.passive.list[force].cause else {
             let Force { name, .. } = &solver.mechanism().forces[self.passive.list[force].index];
             return Error::Blocked(format!(
                 "at t = {} s the parts of joint `{name}` meet, and no freedom moves them",

@@ -89,7 +89,7 @@ impl Equations {
         loads: &mut [f64],
     ) -> Result<(), Error> {
         self.complete_with(solver, rates, direction, loads, &[])?;
-        if self.passive.bearings.is_empty() {
+        if !self.passive.joint_friction.slides() {
             return Ok(());
         }
         let motion = KnownMotion {
@@ -97,11 +97,9 @@ impl Equations {
             driver_rates: &self.point.drivers,
             inputs: &self.point.loads,
         };
-        let changes = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
-        let joints = self.passive.bearings.iter();
-        let reactions: Vec<_> = joints.map(|(_, joint)| changes.reaction(*joint)).collect();
+        let stays = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
         let along = solver.sensitivity(rates, &self.point.drivers, direction)?;
-        let sliding = self.passive.joint_changes(&along, &reactions).to_vec();
+        let sliding = self.passive.joint_changes(&along, &stays).to_vec();
         self.complete_with(solver, rates, direction, loads, &sliding)
     }
 

@@ -26,8 +26,8 @@ use super::state::{Pose, SolverChoices, State};
 use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{
-    BodyId, Coordinate, DriverId, Indeterminate, Jet, MarkerId, Mechanism, Motion, Order,
-    ParameterId, PassiveCause,
+    BodyId, Coordinate, DriverId, Indeterminate, Jet, Load, MarkerId, Mechanism, Motion, Order,
+    ParameterId,
 };
 
 /// Solves position, velocity and acceleration of one mechanism.
@@ -355,14 +355,11 @@ impl Solver {
         self.state.measure(relation, rates)
     }
 
-    /// Returns the relation along which a passive force acts.
+    /// Returns the relation along which a force acts that has this coordinate: of a joint with play its
+    /// own.
     #[must_use]
-    pub fn relation_of(
-        &self,
-        coordinate: &Coordinate,
-        cause: &PassiveCause,
-    ) -> Arc<dyn Constraint> {
-        self.compiled.system.relation_of(coordinate, cause)
+    pub fn relation_of(&self, load: &Load, coordinate: &Coordinate) -> Arc<dyn Constraint> {
+        self.compiled.system.relation_of(load, coordinate)
     }
 
     /// Returns least and largest value of the relation of a joint with play at the present pose \[m or

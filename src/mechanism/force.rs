@@ -1,6 +1,6 @@
 //! Forces on a mechanism, besides gravity.
 
-use super::friction::{Bearing, FrictionLaw};
+use super::friction::FrictionLaw;
 use super::{Coordinate, Expression, MarkerId, Mechanism, Number, ParameterId, Unit, Variable};
 
 /// Force on a mechanism.
@@ -55,26 +55,21 @@ pub enum PassiveCause {
 }
 
 impl PassiveCause {
-    /// Returns the joint that presses on friction.
+    /// Returns whether it is a contact, which holds its coordinate at a limit.
     #[must_use]
-    pub fn bearing(&self) -> Option<&Bearing> {
-        match self {
-            Self::Friction(law) => law.bearing.as_ref(),
-            Self::Stop(_) | Self::Play(_) => None,
-        }
+    pub fn is_contact(&self) -> bool {
+        matches!(self, Self::Stop(_) | Self::Play(_))
     }
 
     /// Returns the part of the velocity with which something bounces, zero for friction.
     #[must_use]
     pub fn restitution(&self, mechanism: &Mechanism, parameters: &[f64]) -> f64 {
-        let value = |restitution: Option<&Expression>| {
-            restitution.map_or(0.0, |restitution| restitution.value(parameters))
-        };
         match self {
             Self::Stop(stop) => mechanism.stops[*stop].restitution(parameters),
             Self::Play(joint) => {
                 let play = mechanism.joints[*joint].kind.play();
-                value(play.and_then(|play| play.restitution.as_ref()))
+                let restitution = play.and_then(|play| play.restitution.as_ref());
+                restitution.map_or(0.0, |restitution| restitution.value(parameters))
             }
             Self::Friction(_) => 0.0,
         }
@@ -173,16 +168,7 @@ impl Mechanism {
     /// reactions instead.
     #[must_use]
     pub fn given_forces(&self) -> Vec<ForceComponent> {
-        self.force_components(|load| {
-            let is_reaction = matches!(
-                load,
-                Load::Passive {
-                    cause: PassiveCause::Play(_),
-                    ..
-                }
-            );
-            !load.is_input() && !is_reaction
-        })
+        self.force_components(|load| !load.is_input() && load.play().is_none())
     }
 
     fn force_components(&self, is_wanted: impl Fn(&Load) -> bool) -> Vec<ForceComponent> {
@@ -381,6 +367,33 @@ impl Load {
         }
     }
 
+    /// Returns the cause of a force that follows from the motion.
+    #[must_use]
+    pub fn cause(&self) -> Option<&PassiveCause> {
+        match self {
+            Self::Passive { cause, .. } => Some(cause),
+            Self::Coordinate { .. } | Self::Marker { .. } => None,
+        }
+    }
+
+    /// Returns the law of friction that sticks.
+    #[must_use]
+    pub fn friction(&self) -> Option<&FrictionLaw> {
+        match self.cause() {
+            Some(PassiveCause::Friction(law)) => Some(law),
+            _ => None,
+        }
+    }
+
+    /// Returns the joint whose parts meet, for the force of a joint with play.
+    #[must_use]
+    pub fn play(&self) -> Option<usize> {
+        match self.cause() {
+            Some(PassiveCause::Play(joint)) => Some(*joint),
+            _ => None,
+        }
+    }
+
     /// Returns whether its size is an FMI input.
     #[must_use]
     pub fn is_input(&self) -> bool {
@@ -428,13 +441,7 @@ impl Load {
 impl Mechanism {
     /// Returns the friction that sticks.
     pub fn frictions(&self) -> impl Iterator<Item = &FrictionLaw> {
-        self.forces.iter().filter_map(|force| match &force.load {
-            Load::Passive {
-                cause: PassiveCause::Friction(law),
-                ..
-            } => Some(&**law),
-            _ => None,
-        })
+        self.forces.iter().filter_map(|force| force.load.friction())
     }
 
     /// Returns whether friction acts in joints, by their reactions.

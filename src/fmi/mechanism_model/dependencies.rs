@@ -146,12 +146,9 @@ impl<'a> DependencyTable<'a> {
 
     /// Returns whether a force follows from all others and the masses.
     fn is_passive(&self, force: usize) -> bool {
-        match &self.mechanism.forces[force].load {
-            Load::Passive { cause, .. } => {
-                self.mechanism.has_freedoms() || cause.bearing().is_some()
-            }
-            _ => false,
-        }
+        let load = &self.mechanism.forces[force].load;
+        let is_in_joint = load.friction().is_some_and(|law| law.bearing.is_some());
+        load.cause().is_some() && self.mechanism.has_freedoms() || is_in_joint
     }
 
     /// Returns the dependencies on those of the quantities that are variables.

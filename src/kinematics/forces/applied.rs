@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use crate::kinematics::constraint::configuration::Configuration;
-use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
+use crate::kinematics::constraint::{Constraint, Gradient};
 use crate::kinematics::error::Error;
 use crate::kinematics::system::System;
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId,
-    PassiveCause,
 };
 
 /// The forces of a mechanism, ready to be evaluated.
@@ -123,11 +122,8 @@ impl AppliedForces {
         let forces = system.mechanism().forces.iter().zip(inputs);
         let list = forces.map(|(force, &input)| AppliedForce {
             place: match &force.load {
-                Load::Coordinate { coordinate, .. } => {
-                    Place::Coordinate(of_coordinate(coordinate).into())
-                }
-                Load::Passive { coordinate, cause } => {
-                    Place::Coordinate(system.relation_of(coordinate, cause))
+                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
+                    Place::Coordinate(system.relation_of(&force.load, coordinate))
                 }
                 Load::Marker { marker, axes, .. } => Place::Marker(*marker, *axes),
             },
@@ -169,15 +165,8 @@ impl AppliedForces {
                 ) => {
                     let law = definition.load.law();
                     let value = relation.value(at);
-                    let is_play = matches!(
-                        &definition.load,
-                        Load::Passive {
-                            cause: PassiveCause::Play(_),
-                            ..
-                        }
-                    );
                     if coordinate.kind == CoordinateKind::Distance
-                        && !is_play
+                        && definition.load.play().is_none()
                         && value <= distance_rounding(coordinate, at)
                     {
                         return fault("has no direction: the distance of its markers is zero");

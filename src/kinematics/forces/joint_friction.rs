@@ -8,10 +8,11 @@
 //! [pressure](crate::mechanism::Bearing::pressure). There is one solution where the matrix μ_k p_k(B_kj)
 //! has eigenvalues below one: f is the fixed point of a contraction then.
 
+use super::sensitivity::ForceSensitivity;
 use crate::kinematics::error::Error;
 use crate::kinematics::linear::{DenseLu, Factors};
 use crate::kinematics::state::SINGULAR_HERE;
-use crate::mechanism::{Dual, FrictionLaw, Load, Mechanism, Number, ParameterId, PassiveCause};
+use crate::mechanism::{Bearing, Dual, FrictionLaw, Mechanism, Number, ParameterId};
 
 /// Newton steps, far more than the nearly linear equations take.
 const MOST_STEPS: usize = 50;
@@ -41,7 +42,8 @@ pub struct JointFriction {
 #[derive(Debug)]
 struct Pair {
     name: String,
-    law: Box<FrictionLaw>,
+    bearing: Bearing,
+    law: FrictionLaw,
     /// Rate of the joint's coordinate, and the direction in which it slides: zero where it rests.
     rate: f64,
     sign: f64,
@@ -55,15 +57,8 @@ impl Pair {
         reaction: [N; 3],
         rate: N,
     ) -> N {
-        let bearing = self.law.bearing.as_ref().expect("it is in a joint");
-        let pressure = bearing.pressure(parameter, reaction);
+        let pressure = self.bearing.pressure(parameter, reaction);
         self.law.along(parameter, pressure, rate, self.sign)
-    }
-
-    /// Returns the pressure for a reaction.
-    fn pressure(&self, parameter: &impl Fn(ParameterId) -> f64, reaction: [f64; 3]) -> f64 {
-        let bearing = self.law.bearing.as_ref().expect("it is in a joint");
-        bearing.pressure(parameter, reaction)
     }
 
     /// Returns the derivative of the force as the reaction changes.
@@ -95,16 +90,10 @@ impl JointFriction {
     /// Makes the storage; redundant constraints leave the reactions `open`.
     pub(in crate::kinematics) fn new(mechanism: &Mechanism, open: bool) -> Self {
         let list = mechanism.forces.iter().filter_map(|force| {
-            let Load::Passive {
-                cause: PassiveCause::Friction(law),
-                ..
-            } = &force.load
-            else {
-                return None;
-            };
-            law.bearing.as_ref()?;
+            let law = force.load.friction()?;
             Some(Pair {
                 name: force.name.clone(),
+                bearing: law.bearing.clone()?,
                 law: law.clone(),
                 rate: 0.0,
                 sign: 0.0,
@@ -139,7 +128,15 @@ impl JointFriction {
 
     /// Sets the parameters, before the motion of the joints.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
-        self.parameters.copy_from_slice(parameters);
+        if !self.list.is_empty() {
+            self.parameters.copy_from_slice(parameters);
+        }
+    }
+
+    /// Returns whether a joint with friction slides.
+    #[must_use]
+    pub fn slides(&self) -> bool {
+        self.list.iter().any(|own| own.sign != 0.0)
     }
 
     /// Sets the motion of the joint at a place: the rate of its coordinate, and the direction in which it
@@ -155,7 +152,7 @@ impl JointFriction {
     pub fn limit(&self, place: usize) -> f64 {
         let own = &self.list[place];
         let value = |id: ParameterId| self.parameters[id.index()];
-        own.law.sticking(&value) * own.pressure(&value, self.reactions[place])
+        own.law.sticking(&value) * own.bearing.pressure(&value, self.reactions[place])
     }
 
     /// Solves the friction of all joints that slide. `respond` solves the reactions of all joints for
@@ -187,7 +184,7 @@ impl JointFriction {
         self.forces.fill(0.0);
         respond(&self.forces, &mut self.unloaded)?;
         self.reactions.copy_from_slice(&self.unloaded);
-        if self.list.iter().all(|own| own.sign == 0.0) {
+        if !self.slides() {
             return Ok(());
         }
         self.columns.fill([0.0; 3]);
@@ -231,7 +228,9 @@ impl JointFriction {
         for (row, own) in self.list.iter().enumerate() {
             factors.add(row, row, 1.0);
             for column in 0..count {
-                let pressure = own.pressure(&value, self.columns[row * count + column]);
+                let pressure = own
+                    .bearing
+                    .pressure(&value, self.columns[row * count + column]);
                 let coefficient = own.law.dry(&value, own.rate) * own.sign.abs();
                 factors.add(row, column, -coefficient * pressure);
             }
@@ -294,21 +293,21 @@ impl JointFriction {
     }
 
     /// Returns the changes of the friction of all joints along a direction, from the changes of the
-    /// parameters, of the rates of the joints, and of the reactions where friction stays as it is. Belongs
+    /// parameters, of the rates of the joints, and of the forces where friction stays as it is. Belongs
     /// to the last solution.
     pub fn changes(
         &mut self,
         parameter: &impl Fn(ParameterId) -> Dual,
         rates: &[Dual],
-        reactions: &[[f64; 3]],
+        forces: &ForceSensitivity,
     ) -> &[f64] {
         self.side.fill(0.0);
-        if self.list.iter().all(|own| own.sign == 0.0) {
+        if !self.slides() {
             return &self.side;
         }
         let sliding = self.list.iter().enumerate();
         for (row, own) in sliding.filter(|(_, own)| own.sign != 0.0) {
-            let [is, by] = [self.reactions[row], reactions[row]];
+            let [is, by] = [self.reactions[row], forces.reaction(own.bearing.joint)];
             let reaction = [0, 1, 2].map(|k| Dual::new(is[k], [by[k]]));
             self.side[row] = own.along(parameter, reaction, rates[row]).first();
         }

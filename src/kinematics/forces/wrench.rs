@@ -7,7 +7,7 @@ use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Coupling, Gradient};
 use crate::kinematics::origin::Origin;
 use crate::kinematics::system::{System, contact_place, opens_towards};
-use crate::mechanism::{BodyId, Joint, JointKind, Load, Mechanism, Number, PassiveCause, Reported};
+use crate::mechanism::{BodyId, Joint, JointKind, Mechanism, Number, Reported};
 
 /// The sum of the generalized forces that rows exert on a joint's second body, or on ground.
 #[derive(Clone, Copy, Debug)]
@@ -121,10 +121,7 @@ impl ReactionRows {
             }
         }
         for (force, definition) in mechanism.forces.iter().enumerate() {
-            if let Load::Passive {
-                cause: PassiveCause::Play(joint),
-                ..
-            } = definition.load
+            if let Some(joint) = definition.load.play()
                 && let Some(open) = system.open_relation(joint)
             {
                 let relation = Arc::clone(&open.relation);

@@ -178,9 +178,7 @@ impl Solution {
         else {
             return Ok(());
         };
-        if !joint_friction.is_empty() {
-            joint_friction.set_parameters(&solver.pose().parameters);
-        }
+        joint_friction.set_parameters(&solver.pose().parameters);
         let mut place = 0;
         for friction in &*frictions {
             let rate = solver.coordinate(&*friction.relation, rates).first();
@@ -310,13 +308,11 @@ impl Solution {
                 };
             }
         }
-        if !of_joints.is_empty() {
-            let along = solver.force_sensitivity(motion, direction, &loads, forces)?;
-            let joints = frictions.iter().filter_map(|friction| friction.joint);
-            let reactions: Vec<_> = joints.map(|joint| along.reaction(joint)).collect();
+        if joint_friction.slides() {
+            let stays = solver.force_sensitivity(motion, direction, &loads, forces)?;
             let along = solver.sensitivity(rates, driver_rates, direction)?;
             let value = |id: ParameterId| along.parameter_value(id);
-            let changes = joint_friction.changes(&value, &of_joints, &reactions);
+            let changes = joint_friction.changes(&value, &of_joints, &stays);
             let in_joints = frictions.iter().filter(|friction| friction.joint.is_some());
             for (friction, change) in in_joints.zip(changes) {
                 loads[friction.load] = *change;

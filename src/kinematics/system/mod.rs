@@ -26,8 +26,8 @@ use crate::kinematics::constraint::{
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    Coordinate, DriverId, Expression, Jet, JointKind, Mechanism, Motion, MotionInForce,
-    MovingProfile, Number, ParameterId, PassiveCause, Phase,
+    Coordinate, DriverId, Expression, Jet, JointKind, Load, Mechanism, Motion, MotionInForce,
+    MovingProfile, Number, ParameterId, Phase,
 };
 
 /// The target of c(q).
@@ -217,17 +217,14 @@ impl System {
         all.flat_map(|open| open.parameters(&self.mechanism))
     }
 
-    /// Returns the relation along which a passive force acts: of a joint with play its own, or else that
-    /// of the coordinate.
+    /// Returns the relation along which a force acts that has this coordinate: of a joint with play its
+    /// own, or else that of the coordinate.
     pub(in crate::kinematics) fn relation_of(
         &self,
+        load: &Load,
         coordinate: &Coordinate,
-        cause: &PassiveCause,
     ) -> Arc<dyn Constraint> {
-        let open = match cause {
-            PassiveCause::Play(joint) => self.open_relation(*joint),
-            PassiveCause::Stop(_) | PassiveCause::Friction(_) => None,
-        };
+        let open = load.play().and_then(|joint| self.open_relation(joint));
         match open {
             Some(open) => Arc::clone(&open.relation),
             None => constraint::of_coordinate(coordinate).into(),
