@@ -59,6 +59,13 @@ impl Dimension {
         [self.kg, self.m, self.s, self.rad]
     }
 
+    /// Returns the base units that it has, with their exponents.
+    #[cfg(feature = "fmi")]
+    pub(crate) fn base_units(self) -> impl Iterator<Item = (&'static str, i8)> {
+        let all = ["kg", "m", "s", "rad"].into_iter().zip(self.exponents());
+        all.filter(|(_, exponent)| *exponent != 0)
+    }
+
     fn of(exponents: [Option<i8>; 4]) -> Option<Self> {
         let [kg, m, s, rad] = exponents;
         Some(dimension(kg?, m?, s?, rad?))

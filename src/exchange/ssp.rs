@@ -92,14 +92,7 @@ fn units<'a, Q: 'a>(
     }
     let mut xml = format!("{indent}<{prefix}:Units>\n");
     for (name, unit) in known {
-        let dimension = unit.dimension;
-        let exponents = [
-            ("kg", dimension.kg),
-            ("m", dimension.m),
-            ("s", dimension.s),
-            ("rad", dimension.rad),
-        ];
-        let exponents = exponents.iter().filter(|(_, exponent)| *exponent != 0);
+        let exponents = unit.dimension.base_units();
         let exponents = exponents.map(|(base, exponent)| format!(" {base}=\"{exponent}\""));
         let exponents: String = exponents.collect();
         let _ = writeln!(

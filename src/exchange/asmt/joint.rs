@@ -29,15 +29,15 @@ impl Reader<'_> {
         let is_within = axes.map(|axis| self.plane.is_within(axis));
         let distance = joint.numbers.first().copied().unwrap_or(0.0);
         match &*joint.class {
-            "RevoluteJoint" if is_normal[0] => self.pin(joint),
-            "SphericalJoint" => self.pin(joint),
-            "CylindricalJoint" if is_normal[0] => self.pin(joint),
+            "RevoluteJoint" if is_normal[0] => self.join(joint, JointKind::Revolute),
+            "SphericalJoint" => self.join(joint, JointKind::Revolute),
+            "CylindricalJoint" if is_normal[0] => self.join(joint, JointKind::Revolute),
             "CylindricalJoint" | "TranslationalJoint" if is_within == [true; 2] => {
                 let angle = self.plane.angle(axes[0]);
                 self.slide(joint, angle, 0.0, true);
             }
             "FixedJoint" => self.weld(joint),
-            "PointInLineJoint" if is_normal[0] => self.pin(joint),
+            "PointInLineJoint" if is_normal[0] => self.join(joint, JointKind::Revolute),
             "PointInLineJoint" if is_within[0] => {
                 let angle = self.plane.angle(axes[0]);
                 self.slide(joint, angle, 0.0, false);
@@ -96,17 +96,16 @@ impl Reader<'_> {
         self.plane.is_within(x).then(|| self.plane.angle(x))
     }
 
-    fn pin(&mut self, joint: &Joint) {
-        let points = joint
-            .markers
-            .each_ref()
-            .map(|marker| self.with_x_axis(marker));
-        self.draft.join(
-            &self.name(&joint.name),
-            JointKind::Revolute,
-            points[0],
-            points[1],
-        );
+    /// Returns the points of both markers.
+    fn ends(&mut self, joint: &Joint) -> [PointRef; 2] {
+        let markers = joint.markers.each_ref();
+        markers.map(|marker| self.with_x_axis(marker))
+    }
+
+    /// Adds a joint that the markers' directions do not concern.
+    fn join(&mut self, joint: &Joint, kind: JointKind) {
+        let [from, to] = self.ends(joint);
+        self.draft.join(&self.name(&joint.name), kind, from, to);
     }
 
     fn with_x_axis(&mut self, marker: &Marker) -> PointRef {
@@ -162,24 +161,12 @@ impl Reader<'_> {
                 class: format!("{} of length {distance}", joint.class),
             });
         }
-        let points = joint
-            .markers
-            .each_ref()
-            .map(|marker| self.with_x_axis(marker));
-        self.draft.join(
-            &self.name(&joint.name),
-            JointKind::Link(distance),
-            points[0],
-            points[1],
-        );
+        self.join(joint, JointKind::Link(distance));
         Ok(())
     }
 
     fn hold(&mut self, joint: &Joint) {
-        let [from, to] = joint
-            .markers
-            .each_ref()
-            .map(|marker| self.with_x_axis(marker));
+        let [from, to] = self.ends(joint);
         let name = self.name(&joint.name);
         self.draft.held.push(Held { name, from, to });
     }
@@ -197,10 +184,7 @@ impl Reader<'_> {
                 class: format!("{} of radius 0", joint.class),
             });
         }
-        let [from, to] = joint
-            .markers
-            .each_ref()
-            .map(|marker| self.with_x_axis(marker));
+        let [from, to] = self.ends(joint);
         let wheels = Wheels {
             sizes: [a.abs(), b.abs()],
             are_radii: true,

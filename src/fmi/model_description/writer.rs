@@ -168,18 +168,9 @@ fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
                 .create_element("Unit")
                 .with_attribute(("name", unit.name));
             definition.with_content(|xml| {
-                let dimension = unit.dimension;
-                let exponents = [
-                    ("kg", dimension.kg),
-                    ("m", dimension.m),
-                    ("s", dimension.s),
-                    ("rad", dimension.rad),
-                ];
                 let mut base = xml.create_element("BaseUnit");
-                for (name, exponent) in exponents {
-                    if exponent != 0 {
-                        base = base.with_attribute((name, exponent.to_string().as_str()));
-                    }
+                for (name, exponent) in unit.dimension.base_units() {
+                    base = base.with_attribute((name, exponent.to_string().as_str()));
                 }
                 base.empty()?;
                 for display in displays {

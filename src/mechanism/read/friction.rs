@@ -3,7 +3,7 @@
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::{
     Bearing, BearingShape, Force, ForceLaw, FrictionLaw, Joint, JointKind, Load, PassiveCause,
-    RegularisedFriction, Span,
+    RegularisedFriction,
 };
 
 use super::context::Context;
@@ -78,20 +78,15 @@ impl<'a> Context<'a> {
             return self.joint_friction(entry, &fields, joints);
         }
         let (coordinate, _, keys) = self.placed::<FrictionKeys<'a>>(entry, &PLACING)?;
-        self.check_static(
+        let force = ("force", keys.force);
+        let law = self.law(
             &keys.owner,
-            ("force", &keys.force),
-            &keys.r#static,
-            &keys.stribeck.key,
+            force,
+            keys.r#static,
+            keys.stribeck,
+            keys.viscous,
         );
-        let coordinate = coordinate?;
-        let law = FrictionLaw {
-            coulomb: keys.force.expression()?,
-            sticking: keys.r#static.optional()?.map(|q| q.expression),
-            stribeck: keys.stribeck.optional()?.map(|q| q.expression),
-            viscous: keys.viscous.optional()?.map(|q| q.expression),
-            bearing: None,
-        };
+        let (coordinate, law) = (coordinate?, law?);
         let load = match keys.regularised.optional()? {
             None => Load::Passive {
                 coordinate,
@@ -123,87 +118,84 @@ impl<'a> Context<'a> {
         joints: Option<&[Joint]>,
     ) -> Option<Force> {
         let keys = self.table::<JointFrictionKeys<'a>>(fields);
-        self.check_static(
+        let coefficient = ("coefficient", keys.coefficient);
+        let law = self.law(
             &keys.owner,
-            ("coefficient", &keys.coefficient),
-            &keys.r#static,
-            &keys.stribeck.key,
+            coefficient,
+            keys.r#static,
+            keys.stribeck,
+            keys.viscous,
         );
         let index = keys.joint.value?;
         // None is behind the joints: a constraint.
         let joint = joints?.get(index);
         let kind = joint.map(|joint| &joint.kind);
         let coordinate = joint.and_then(Joint::free_coordinate);
-        let (needed, foreign) = match kind {
-            Some(JointKind::Revolute) => (Some(&keys.radius), &keys.length),
-            Some(JointKind::Slot) if keys.length.key.is_some() => (None, &keys.length),
-            _ => (None, &keys.radius),
-        };
-        let fault = match (coordinate, needed, &foreign.key) {
-            (None, ..) => Some((
+        let is_pin = matches!(kind, Some(JointKind::Revolute));
+        let is_guide = matches!(kind, Some(JointKind::Translational));
+        let subject = &keys.owner.subject;
+        let foreign = [(&keys.radius.key, is_pin), (&keys.length.key, is_guide)];
+        let foreign = foreign
+            .into_iter()
+            .find_map(|(key, fits)| key.clone().filter(|_| !fits));
+        let (code, span, message, help) = if coordinate.is_none() {
+            (
                 code::FRICTION_COORDINATE,
                 keys.joint.span.clone(),
-                format!("{} is in no joint that slides", keys.owner.subject),
+                format!("{subject} is in no joint that slides"),
                 "friction acts in joints of type `revolute`, `translational` and `slot`; for others give \
                  `coordinate`, `markers` and `force`",
-            )),
-            (_, Some(radius), _) if radius.key.is_none() => Some((
+            )
+        } else if is_pin && keys.radius.key.is_none() {
+            (
                 code::MISSING_KEY,
                 keys.owner.place.clone(),
-                format!("{} has no `radius`", keys.owner.subject),
+                format!("{subject} has no `radius`"),
                 "the friction of a pin is a torque: give the pin's radius, such as `radius = \"8*mm\"`",
-            )),
-            (.., Some(key)) => Some((
+            )
+        } else if let Some(key) = foreign {
+            (
                 code::UNKNOWN_KEY,
-                key.clone(),
-                format!(
-                    "{} has a key that its joint has no use for",
-                    keys.owner.subject
-                ),
+                key,
+                format!("{subject} has a key that its joint has no use for"),
                 "a `revolute` joint has a `radius`, a `translational` one a `length`",
-            )),
-            _ => None,
-        };
-        if let Some((code, span, message, help)) = fault {
-            self.error(code, span, message).suggest(help);
-            return None;
-        }
-        let shape = match keys.radius.optional()? {
-            Some(radius) => BearingShape::Pin {
-                radius: radius.expression,
-            },
-            None => BearingShape::Guide {
-                length: keys.length.optional()?.map(|q| q.expression),
-            },
-        };
-        let law = FrictionLaw {
-            coulomb: keys.coefficient.expression()?,
-            sticking: keys.r#static.optional()?.map(|q| q.expression),
-            stribeck: keys.stribeck.optional()?.map(|q| q.expression),
-            viscous: keys.viscous.optional()?.map(|q| q.expression),
-            bearing: Some(Bearing {
+            )
+        } else {
+            let shape = match keys.radius.optional()? {
+                Some(radius) => BearingShape::Pin {
+                    radius: radius.expression,
+                },
+                None => BearingShape::Guide {
+                    length: keys.length.optional()?.map(|q| q.expression),
+                },
+            };
+            let mut law = law?;
+            law.bearing = Some(Bearing {
                 joint: index,
                 shape,
-            }),
+            });
+            return Some(Force {
+                name: entry.name().to_owned(),
+                description: keys.description.value.unwrap_or_default(),
+                load: Load::Passive {
+                    coordinate: coordinate?,
+                    cause: PassiveCause::Friction(Box::new(law)),
+                },
+            });
         };
-        Some(Force {
-            name: entry.name().to_owned(),
-            description: keys.description.value.unwrap_or_default(),
-            load: Load::Passive {
-                coordinate: coordinate?,
-                cause: PassiveCause::Friction(Box::new(law)),
-            },
-        })
+        self.error(code, span, message).suggest(help);
+        None
     }
 
-    /// Checks that friction sticks with at least as much as it slides, and falls from one to the other.
-    fn check_static(
+    /// Returns the law of friction, with the force or the coefficient while it slides, under its key.
+    fn law(
         &mut self,
         owner: &Fields<'a>,
-        (key, sliding): (&str, &Field<Quantity>),
-        sticking: &Field<Quantity>,
-        stribeck: &Option<Span>,
-    ) {
+        (key, sliding): (&str, Field<Quantity>),
+        sticking: Field<Quantity>,
+        stribeck: Field<Quantity>,
+        viscous: Field<Quantity>,
+    ) -> Option<FrictionLaw> {
         if let (Some(sliding), Some(most)) = (sliding.number(), sticking.number())
             && most < sliding
         {
@@ -211,10 +203,17 @@ impl<'a> Context<'a> {
             self.error(code::OUT_OF_RANGE, sticking.span.clone(), message)
                 .suggest(format!("`static` is at least `{key}`"));
         }
-        if let (Some(span), None) = (stribeck, &sticking.key) {
+        if let (Some(span), None) = (&stribeck.key, &sticking.key) {
             let message = format!("{} has `stribeck`, but no `static`", owner.subject);
             self.error(code::UNKNOWN_KEY, span.clone(), message)
                 .suggest(format!("friction falls from `static` to `{key}`"));
         }
+        Some(FrictionLaw {
+            coulomb: sliding.expression()?,
+            sticking: sticking.optional()?.map(|q| q.expression),
+            stribeck: stribeck.optional()?.map(|q| q.expression),
+            viscous: viscous.optional()?.map(|q| q.expression),
+            bearing: None,
+        })
     }
 }
