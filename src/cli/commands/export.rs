@@ -100,21 +100,11 @@ impl Export {
         for library in found.iter().filter_map(|found| found.path.as_deref()) {
             files.add("a runtime library", library);
         }
-        for library in found.iter().map(|found| &found.library) {
-            if !library.is_current() {
-                let name = library.platform.name;
-                let version = env!("CARGO_PKG_VERSION");
-                let warning = format!(
-                    "the library for {name} is of another version of biela than {version}: build \
-                     it anew by `make runtimes`, and install it by `make install`"
-                );
-                Message::Warning(warning).show();
-            }
-        }
         let mut packed = packed(&found, self.fmi, !self.platforms.is_empty());
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
+        warn_of_old(&libraries);
         let page = match self.no_page {
             true => None,
             false => page_solver::find(None)?,
@@ -161,6 +151,19 @@ fn packed(libraries: &[FoundLibrary], version: Version, chosen: bool) -> String 
         parts.push(format!("not {}", missing.join(", ")));
     }
     parts.join("; ")
+}
+
+/// Warns of libraries of other versions of biela.
+fn warn_of_old(libraries: &[RuntimeLibrary]) {
+    for library in libraries.iter().filter(|library| !library.is_current()) {
+        let name = library.platform.name;
+        let version = env!("CARGO_PKG_VERSION");
+        let warning = format!(
+            "the library for {name} is of another version of biela than {version}: build it anew by \
+             `make runtimes`, and install it by `make install`"
+        );
+        Message::Warning(warning).show();
+    }
 }
 
 /// Returns the FMU of a mechanism, which `solver` has assembled; with a page if the solver for pages
