@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector};
 
 use super::error::Error;
 use super::given::Given;
-use super::integrator::{Failure, System};
 use super::passive::{Passive, PassiveForces};
 use super::state::FreeState;
 use super::triangular::{ascend, descend};
@@ -180,7 +179,7 @@ impl Equations {
 
     /// Looks for events between the accepted point and the present one. Returns the time at which the step
     /// must end instead, if there is an earlier one.
-    fn judge(&mut self, solver: &Solver) -> Option<f64> {
+    pub(super) fn judge(&mut self, solver: &Solver) -> Option<f64> {
         let times = [self.pose.time, solver.pose().time];
         let points = [&*self.accepted.passive, &*self.point.passive];
         self.watch.judge(&self.passive, times, points)
@@ -571,69 +570,5 @@ impl Equations {
             effort * self.point.drivers[row].first()
         });
         self.motion.applied_power + powers.sum::<f64>()
-    }
-}
-
-/// A mechanism on a trial step.
-pub(super) struct Trials<'a, G> {
-    pub(super) solver: &'a mut Solver,
-    pub(super) equations: &'a mut Equations,
-    pub(super) given: &'a G,
-}
-
-impl<G: Given> System for Trials<'_, G> {
-    type Cause = Error;
-
-    fn derivatives(&mut self, t: f64, x: &[f64], dx: &mut [f64]) -> Result<(), Failure<Error>> {
-        let Self {
-            solver,
-            equations,
-            given,
-        } = self;
-        equations.set_drivers(solver, *given, t, x);
-        equations.go(solver, t, None).map_err(Failure::Trial)?;
-        let written = equations.write(solver, dx);
-        let written = written.and_then(|()| equations.vary(solver, x, dx));
-        written.map_err(|error| match error {
-            // No shorter step finds a mass.
-            Error::NoInertia { .. } => Failure::Hard(error),
-            _ => Failure::Trial(error),
-        })
-    }
-
-    fn jacobian(
-        &mut self,
-        t: f64,
-        x: &[f64],
-        _: &[f64],
-        jacobian: &mut DMatrix<f64>,
-        dx_dt: &mut [f64],
-    ) -> Result<(), Failure<Error>> {
-        let Self {
-            solver,
-            equations,
-            given,
-        } = self;
-        let differentiated = equations.differentiate(solver, *given, (t, x), jacobian, dx_dt);
-        differentiated.map_err(Failure::Trial)
-    }
-
-    fn project(&mut self, t: f64, x: &mut [f64]) -> Result<(), Failure<Error>> {
-        let projected = self.equations.project(self.solver, self.given, t, x);
-        projected.map_err(Failure::Trial)
-    }
-
-    fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
-        if let Some(time) = self.equations.judge(self.solver) {
-            return Err(Failure::Cut(time));
-        }
-        let proved = self.equations.prove(self.solver);
-        proved.map_err(|error| match error {
-            // The time of a stop is known: no shorter steps have to find it.
-            Error::Stop { .. } => Failure::Hard(error),
-            _ => Failure::Trial(error),
-        })?;
-        self.equations.accept(self.solver);
-        Ok(())
     }
 }

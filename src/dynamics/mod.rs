@@ -20,6 +20,7 @@
 //! | `settle` | events: impacts, and the modes after them |
 //! | `choose` | the choice of what is held after an event |
 //! | `variations` | the changes of a motion along directions |
+//! | `trials` | the system that the integrator steps |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
 //! | `linear` | its linearisation at a pose; static equilibrium |
 
@@ -35,6 +36,7 @@ mod motion;
 mod passive;
 mod settle;
 mod state;
+mod trials;
 mod triangular;
 mod variations;
 mod watch;

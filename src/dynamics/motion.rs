@@ -5,12 +5,13 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::charts::Charts;
-use super::equations::{Equations, Trials};
+use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
 use super::settle::Event;
 use super::state::FreeState;
+use super::trials::Trials;
 use super::watch::FUNCTIONS;
 use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, Jet};

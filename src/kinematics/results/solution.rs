@@ -207,13 +207,11 @@ impl Solution {
             ..parts
         };
         joint_friction.solve(|sizes, reactions| {
-            let in_joints = frictions.iter().filter(|friction| friction.joint.is_some());
-            for (friction, size) in in_joints.zip(sizes) {
-                loads[friction.load] = *size;
+            for ((load, _), size) in in_joints(frictions).zip(sizes) {
+                loads[load] = *size;
             }
             solve(loads, forces, parts)?;
-            let joints = frictions.iter().filter_map(|friction| friction.joint);
-            for (reaction, joint) in reactions.iter_mut().zip(joints) {
+            for (reaction, (_, joint)) in reactions.iter_mut().zip(in_joints(frictions)) {
                 *reaction = forces.reaction(joint);
             }
             Ok(())
@@ -313,9 +311,8 @@ impl Solution {
             let along = solver.sensitivity(rates, driver_rates, direction)?;
             let value = |id: ParameterId| along.parameter_value(id);
             let changes = joint_friction.changes(&value, &of_joints, &stays);
-            let in_joints = frictions.iter().filter(|friction| friction.joint.is_some());
-            for (friction, change) in in_joints.zip(changes) {
-                loads[friction.load] = *change;
+            for ((load, _), change) in in_joints(frictions).zip(changes) {
+                loads[load] = *change;
             }
         }
         let changes = solver.force_sensitivity(motion, direction, &loads, forces)?;
@@ -345,6 +342,12 @@ impl Solution {
             .map(|forces| solver.lift_offs(forces, lifted));
         begun.into_iter().flatten()
     }
+}
+
+/// Returns the loads of the friction in joints, each with the index of its joint.
+fn in_joints(frictions: &[Friction]) -> impl Iterator<Item = (usize, usize)> {
+    let all = frictions.iter();
+    all.filter_map(|friction| Some((friction.load, friction.joint?)))
 }
 
 /// Returns the friction of a mechanism without freedoms.

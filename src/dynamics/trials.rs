@@ -1,0 +1,73 @@
+//! The mechanism as the integrator sees it: a system of differential equations on trial steps.
+
+use nalgebra::DMatrix;
+
+use super::equations::Equations;
+use super::error::Error;
+use super::given::Given;
+use super::integrator::{Failure, System};
+use crate::kinematics::Solver;
+
+/// A mechanism on a trial step.
+pub(super) struct Trials<'a, G> {
+    pub(super) solver: &'a mut Solver,
+    pub(super) equations: &'a mut Equations,
+    pub(super) given: &'a G,
+}
+
+impl<G: Given> System for Trials<'_, G> {
+    type Cause = Error;
+
+    fn derivatives(&mut self, t: f64, x: &[f64], dx: &mut [f64]) -> Result<(), Failure<Error>> {
+        let Self {
+            solver,
+            equations,
+            given,
+        } = self;
+        equations.set_drivers(solver, *given, t, x);
+        equations.go(solver, t, None).map_err(Failure::Trial)?;
+        let written = equations.write(solver, dx);
+        let written = written.and_then(|()| equations.vary(solver, x, dx));
+        written.map_err(|error| match error {
+            // No shorter step finds a mass.
+            Error::NoInertia { .. } => Failure::Hard(error),
+            _ => Failure::Trial(error),
+        })
+    }
+
+    fn jacobian(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        _: &[f64],
+        jacobian: &mut DMatrix<f64>,
+        dx_dt: &mut [f64],
+    ) -> Result<(), Failure<Error>> {
+        let Self {
+            solver,
+            equations,
+            given,
+        } = self;
+        let differentiated = equations.differentiate(solver, *given, (t, x), jacobian, dx_dt);
+        differentiated.map_err(Failure::Trial)
+    }
+
+    fn project(&mut self, t: f64, x: &mut [f64]) -> Result<(), Failure<Error>> {
+        let projected = self.equations.project(self.solver, self.given, t, x);
+        projected.map_err(Failure::Trial)
+    }
+
+    fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
+        if let Some(time) = self.equations.judge(self.solver) {
+            return Err(Failure::Cut(time));
+        }
+        let proved = self.equations.prove(self.solver);
+        proved.map_err(|error| match error {
+            // The time of a stop is known: no shorter steps have to find it.
+            Error::Stop { .. } => Failure::Hard(error),
+            _ => Failure::Trial(error),
+        })?;
+        self.equations.accept(self.solver);
+        Ok(())
+    }
+}
