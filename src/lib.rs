@@ -93,4 +93,6 @@ pub mod kinematics;
 pub mod mechanism;
 #[cfg(feature = "page")]
 pub mod page;
+#[cfg(feature = "page")]
+pub mod studio;
 pub mod unit;

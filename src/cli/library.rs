@@ -13,7 +13,7 @@ use super::conditions::check_limits;
 use super::form::Form;
 use super::input::Input;
 use super::{conditions, page_solver, runtime};
-use crate::fmi::Platform;
+use crate::fmi::{Platform, RuntimeLibrary};
 use crate::kinematics::End;
 use crate::mechanism::{DriverId, Mechanism, ParameterId, Source};
 
@@ -42,18 +42,46 @@ pub fn archive(
         .map(platform)
         .collect::<Result<_, _>>()?;
     let form = Form::new(version(fmi)?, terminals);
+    let find = || {
+        let found = runtime::narrow(runtime::find(runtime)?, &platforms)?;
+        let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
+        Ok((libraries, page_solver::find(None)?))
+    };
+    let (libraries, page) = find().map_err(|error: super::error::Error| error.to_string())?;
+    archive_of(source, mechanism, form, &libraries, page.as_deref())
+}
+
+/// Returns the FMU that `biela export` writes for version `2` or `3` of FMI, with these libraries,
+/// and with a page if the solver for pages is given.
+///
+/// # Errors
+///
+/// The mechanism does not assemble, or there is no such version.
+pub fn archive_with(
+    source: &Source,
+    mechanism: &Arc<Mechanism>,
+    fmi: &str,
+    libraries: &[RuntimeLibrary],
+    page: Option<&[u8]>,
+) -> Result<Vec<u8>, String> {
+    let form = Form::new(version(fmi)?, false);
+    archive_of(source, mechanism, form, libraries, page)
+}
+
+fn archive_of(
+    source: &Source,
+    mechanism: &Arc<Mechanism>,
+    form: Form,
+    libraries: &[RuntimeLibrary],
+    page: Option<&[u8]>,
+) -> Result<Vec<u8>, String> {
     let input = Input {
         source: source.clone(),
         mechanism: Arc::clone(mechanism),
     };
-    let pack = || {
-        let found = runtime::narrow(runtime::find(runtime)?, &platforms)?;
-        let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
-        let page = page_solver::find(None)?;
-        let solver = input.assemble()?;
-        pack(&input, &solver, form, &libraries, page.as_deref())
-    };
-    pack().map_err(|error: super::error::Error| error.to_string())
+    let solver = input.assemble().map_err(|error| error.to_string())?;
+    let packed = pack(&input, &solver, form, libraries, page);
+    packed.map_err(|error| error.to_string())
 }
 
 /// Returns the end of a driver's range as `biela range` describes it.

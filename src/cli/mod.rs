@@ -40,7 +40,9 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-pub use library::{archive, check, check_parameter, describe_end, parameter_value, unknown_name};
+pub use library::{
+    archive, archive_with, check, check_parameter, describe_end, parameter_value, unknown_name,
+};
 
 /// Planar mechanisms as text files: check them, run them, export them as FMUs.
 ///

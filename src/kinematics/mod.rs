@@ -93,7 +93,7 @@ pub(crate) use linear::{DenseLu, Factors, Singular};
 pub use origin::Origin;
 pub use path::{Curve, Path, Rates};
 pub use plan::{BlockChoices, Crossing, Polynomial};
-pub use redundancy::Redundancy;
+pub use redundancy::{Redundancy, Undriven, undriven};
 pub use results::{ForceNeed, Output, OutputSource, Solution, omitted_reactions};
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::Solver;

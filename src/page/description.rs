@@ -15,7 +15,8 @@ impl Session {
     pub fn description(&self) -> Value {
         let mechanism = self.mechanism();
         let pose = self.pose();
-        let drivers = mechanism.drivers.iter().enumerate();
+        let own = &self.own.drivers;
+        let drivers = own.iter().enumerate();
         let drivers = drivers.zip(driver_speeds(mechanism, &self.ranges));
         let drivers: Vec<Value> = drivers
             .map(|((index, driver), usual)| {
@@ -107,7 +108,8 @@ impl Session {
                 "high_end": causes[1],
             }))
         };
-        let ranges: Vec<Option<Value>> = self.ranges.iter().map(range).collect();
+        let ranges = self.ranges.iter().take(own.len()).map(range);
+        let ranges: Vec<Option<Value>> = ranges.collect();
         json!({
             "name": mechanism.name,
             "description": mechanism.description,

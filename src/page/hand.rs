@@ -187,7 +187,7 @@ impl Session {
                 let range = &self.ranges[driver.index()];
                 let width = range
                     .as_ref()
-                    .map_or(1.0, |range| range.ends[1] - range.ends[0]);
+                    .map_or_else(|| self.solver.size(), |range| range.ends[1] - range.ends[0]);
                 if own.coordinate.kind.is_angle() {
                     LARGEST_ANGLE
                 } else if width > 0.0 {

@@ -11,6 +11,7 @@
 //! | `outcome` | [`Outcome`]: the end of a move, and what stopped it |
 //! | `values` | outputs that are shown, and the units of their values |
 //! | `ranges` | ranges and speeds of the drivers |
+//! | `held` | [`assembled`]: what nothing drives is held by the hand |
 //! | `undo` | states that can be undone |
 //! | `freedoms` | the free motion of a session, and its states |
 //! | `spring` | a spring from the hand to a body |
@@ -34,6 +35,7 @@ mod frame;
 mod free;
 mod freedoms;
 mod hand;
+mod held;
 mod host;
 mod outcome;
 mod ranges;
@@ -46,6 +48,7 @@ mod values;
 
 pub use chart::Over;
 pub use edit::{EditError, Place, edit};
+pub use held::assembled;
 pub use host::Host;
 pub use outcome::{Obstacle, Outcome};
 pub use session::Session;

@@ -29,13 +29,17 @@ pub(super) struct DriverRange {
     pub(super) causes: [Option<String>; 2],
 }
 
-/// Returns the range of each driver that is an input, and poses in the ranges.
-pub(super) fn driver_ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, Vec<Vec<f64>>) {
+/// Returns the range of each driver that is an input, and poses in the ranges; none for drivers
+/// beyond the first `own`, with which the hand holds the mechanism.
+pub(super) fn driver_ranges(
+    solver: &mut Solver,
+    own: usize,
+) -> (Vec<Option<DriverRange>>, Vec<Vec<f64>>) {
     let mechanism = Arc::clone(solver.mechanism());
     let home = solver.pose().clone();
     let mut poses = Vec::new();
     let ranges = mechanism.drivers.iter().enumerate().map(|(index, driver)| {
-        if driver.motion().is_some() {
+        if driver.motion().is_some() || index >= own {
             return None;
         }
         let range = solver.range(DriverId(index), &RANGE);

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::edit::{EditError, Place, edit};
 use super::freedoms::{Freedoms, Moment};
+use super::held::assembled;
 use super::outcome::{Obstacle, Outcome};
 use super::ranges::{DriverRange, driver_ranges, start_rates};
 use super::spring::Spring;
@@ -30,7 +31,10 @@ pub struct Session {
     source: Source,
     /// Warnings about the file, one line each.
     pub(super) warnings: Vec<String>,
+    /// The mechanism that moves, with drivers behind those of the file where these are too few.
     pub(super) mechanism: Arc<Mechanism>,
+    /// The mechanism of the file, which is drawn.
+    pub(super) own: Arc<Mechanism>,
     /// Solver of the mechanism; of a free motion, maybe in other coordinates and with a spring.
     pub(super) solver: Solver,
     /// The motion of freedoms, if there are some.
@@ -70,10 +74,10 @@ impl Session {
         })?;
         let warnings = diagnostics.iter().map(|d| d.one_line(&source)).collect();
         let refuse = |error: crate::kinematics::Error| vec![error.to_string()];
-        let mechanism = Arc::new(mechanism);
-        let path = Path::new(&mechanism);
-        let mut solver = Solver::assembled(Arc::clone(&mechanism), &path).map_err(refuse)?;
-        let (ranges, reached) = driver_ranges(&mut solver);
+        let own = Arc::new(mechanism);
+        let mut solver = assembled(&own).map_err(refuse)?;
+        let mechanism = Arc::clone(solver.mechanism());
+        let (ranges, reached) = driver_ranges(&mut solver, own.drivers.len());
         let mut solution = Solution::new(&solver);
         solution.driver_rates = start_rates(&mechanism, &ranges);
         let freedoms = Freedoms::new(&solver).map_err(|error| vec![error.to_string()])?;
@@ -86,7 +90,7 @@ impl Session {
             start: start.clone(),
             now: start.clone(),
         };
-        let outputs = Output::all(&mechanism);
+        let outputs = Output::all(&own);
         let mut session = Self {
             warnings,
             start,
@@ -95,12 +99,13 @@ impl Session {
             spring: None,
             solution,
             has_rates: false,
-            picture: MovingPicture::new(&mut solver, &reached, None),
+            picture: MovingPicture::new(&mut solver, &own, &reached, None),
             outputs,
             length: mechanism.length_display(),
+            path: Path::new(&mechanism),
             mechanism,
+            own,
             ranges,
-            path,
             home,
             history: UndoHistory::default(),
             modes: Vec::new(),
@@ -349,11 +354,11 @@ impl Session {
     fn draw_anew(&mut self, keep: bool) {
         self.picture = if keep {
             let scale = self.picture.scale();
-            MovingPicture::new(&mut self.solver, &[], Some(scale))
+            MovingPicture::new(&mut self.solver, &self.own, &[], Some(scale))
         } else {
-            let (ranges, reached) = driver_ranges(&mut self.solver);
+            let (ranges, reached) = driver_ranges(&mut self.solver, self.own.drivers.len());
             self.ranges = ranges;
-            MovingPicture::new(&mut self.solver, &reached, None)
+            MovingPicture::new(&mut self.solver, &self.own, &reached, None)
         };
         self.refresh();
     }
@@ -403,7 +408,7 @@ impl Session {
         let names: Vec<String> = changed.map(|(p, _)| p.name.clone()).collect();
         let velocity = |freedom| Some(self.driver(freedom).first());
         let text = self.source.text();
-        edit(text, self.mechanism(), &names, (&pose, velocity), place)
+        edit(text, &self.own, &names, (&pose, velocity), place)
     }
 
     // -- undo --------------------------------------------------------------------------------

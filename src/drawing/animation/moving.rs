@@ -11,7 +11,7 @@ use crate::drawing::scene::Scene;
 use crate::drawing::sheet::CAPITALS;
 use crate::drawing::sweep::sweep;
 use crate::kinematics::{Pose, Solver};
-use crate::mechanism::BodyId;
+use crate::mechanism::{BodyId, Mechanism};
 
 /// A picture whose parts are drawn once, in frames that move with the mechanism.
 pub struct MovingPicture {
@@ -22,22 +22,45 @@ pub struct MovingPicture {
 }
 
 impl MovingPicture {
-    /// Returns the picture of a mechanism, drawn at the solver's pose, to which the solver returns.
-    /// It has room for the motion of [`Scene::new`] and for `further` poses. Its scale is the one
-    /// given \[units of the picture per metre\], or fits the motion.
+    /// Returns the picture of a mechanism, drawn at the solver's pose, to which the solver returns;
+    /// the solver may have more drivers. It has room for the motion of [`Scene::new`] and for
+    /// `further` poses. Its scale is the one given \[units of the picture per metre\], or fits the
+    /// motion.
     #[must_use]
-    pub fn new(solver: &mut Solver, further: &[Vec<f64>], scale: Option<f64>) -> Self {
+    pub fn new(
+        solver: &mut Solver,
+        mechanism: &Mechanism,
+        further: &[Vec<f64>],
+        scale: Option<f64>,
+    ) -> Self {
         let motion = sweep(solver);
         let Pose { q, parameters, .. } = solver.pose();
-        let scene = Scene::along(solver.mechanism(), parameters, q, &motion, true);
+        Self::along(mechanism, parameters, q, &motion, further, scale)
+    }
+
+    /// Returns the picture of a mechanism at rest at the pose q, \[m, m, rad\] per body, at a scale
+    /// \[units of the picture per metre\].
+    #[must_use]
+    pub fn still(mechanism: &Mechanism, parameters: &[f64], q: &[f64], scale: f64) -> Self {
+        Self::along(mechanism, parameters, q, &[q.to_vec()], &[], Some(scale))
+    }
+
+    fn along(
+        mechanism: &Mechanism,
+        parameters: &[f64],
+        q: &[f64],
+        motion: &[Vec<f64>],
+        further: &[Vec<f64>],
+        scale: Option<f64>,
+    ) -> Self {
+        let scene = Scene::along(mechanism, parameters, q, motion, true);
         let poses: Vec<&[f64]> = std::iter::once(q)
-            .chain(&motion)
-            .chain(further)
-            .map(Vec::as_slice)
+            .chain(motion.iter().map(Vec::as_slice))
+            .chain(further.iter().map(Vec::as_slice))
             .collect();
         Self {
             stage: Stage::new(&scene, &poses, scale),
-            home: q.clone(),
+            home: q.to_vec(),
             scene,
         }
     }

@@ -19,6 +19,7 @@
 //! | [`slip`] | explains redundant rows that are open by little |
 //! | [`contradiction`] | explains rows that cannot be satisfied together |
 //! | [`choice`] | chooses the rows that are solved |
+//! | [`undriven`] | coordinates that would hold a mechanism whose drivers are too few |
 //! | [`watch`] | bounds rows set aside between the ends of a sub-step |
 
 mod choice;
@@ -26,6 +27,7 @@ mod closure;
 mod contradiction;
 mod rank;
 mod slip;
+mod undriven;
 mod watch;
 
 pub use choice::Redundancy;
@@ -34,4 +36,5 @@ pub(super) use choice::{
     redundancies,
 };
 pub(super) use rank::{drivers_first, jacobian_rows};
+pub use undriven::{Undriven, undriven};
 pub(super) use watch::watch_between;

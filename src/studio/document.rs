@@ -1,0 +1,225 @@
+//! A mechanism file that is drawn and typed, with its undo.
+
+use serde_json::{Value, json};
+
+use super::drawn::Drawn;
+use super::gesture::{self, Refusal};
+use super::sketch::sketch;
+use super::status::{State, sentence};
+use super::text::TomlText;
+use crate::mechanism::{Diagnostic, Severity, Source};
+
+/// Most texts to which undo returns.
+const MOST: usize = 1_000;
+
+/// The file of a studio.
+#[derive(Debug, Default)]
+pub(super) struct Document {
+    name: String,
+    files: Vec<(String, String)>,
+    text: String,
+    /// The mechanism of the text; while that has an error, of the last text without one.
+    drawn: Option<Drawn>,
+    /// Whether `drawn` is of another text.
+    is_stale: bool,
+    problems: Vec<Problem>,
+    /// The texts before, the oldest first.
+    before: Vec<String>,
+    /// The texts in the order in which they were undone.
+    undone: Vec<String>,
+}
+
+/// A problem at its place in the text, in bytes.
+#[derive(Debug)]
+struct Problem {
+    place: std::ops::Range<usize>,
+    severity: Severity,
+    message: String,
+    help: Option<String>,
+}
+
+impl From<Diagnostic> for Problem {
+    fn from(diagnostic: Diagnostic) -> Self {
+        let place = diagnostic.labels.first().map(|label| label.span.clone());
+        Self {
+            place: place.unwrap_or(0..0),
+            severity: diagnostic.severity,
+            message: diagnostic.message,
+            help: diagnostic.help,
+        }
+    }
+}
+
+impl Document {
+    /// Begins with a file.
+    pub(super) fn new(name: &str, text: &str, files: Vec<(String, String)>) -> Self {
+        let mut document = Self {
+            name: name.to_owned(),
+            files,
+            ..Self::default()
+        };
+        document.take(text.to_owned());
+        document
+    }
+
+    /// Returns the text.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Takes over a text that was typed; `joined` to the last one, which undo then passes over.
+    pub(super) fn type_text(&mut self, text: &str, joined: bool) {
+        if text == self.text {
+            return;
+        }
+        if !joined || self.before.is_empty() {
+            self.keep();
+        }
+        self.undone.clear();
+        self.take(text.to_owned());
+    }
+
+    /// Does a gesture.
+    ///
+    /// # Errors
+    ///
+    /// The reason why it cannot be done.
+    pub(super) fn gesture(&mut self, gesture: &Value) -> Result<(), Refusal> {
+        let (text, drawn) = self.tried(gesture)?;
+        let drawn = drawn.ok_or("this would leave a file with an error")?;
+        let text = match gesture["kind"].as_str() {
+            Some("shift") => gesture::settled(text, &drawn, decimals(gesture)),
+            _ => text,
+        };
+        if text.as_str() != self.text {
+            self.keep();
+            self.undone.clear();
+            self.take(text.as_str().to_owned());
+        }
+        Ok(())
+    }
+
+    /// Returns what a gesture would draw, with `scale`; nothing is changed.
+    ///
+    /// # Errors
+    ///
+    /// The reason why it cannot be done.
+    pub(super) fn preview(&self, gesture: &Value, scale: f64) -> Result<Value, Refusal> {
+        let (_, drawn) = self.tried(gesture)?;
+        let drawn = drawn.ok_or("this would leave a file with an error")?;
+        Ok(shown(&drawn, scale))
+    }
+
+    fn tried(&self, gesture: &Value) -> Result<(TomlText, Option<Drawn>), Refusal> {
+        let Some(drawn) = self.drawn.as_ref().filter(|_| !self.is_stale) else {
+            return Err("the text has an error: mend it first".into());
+        };
+        let text = TomlText::new(&*self.text).map_err(|error| error.to_string())?;
+        let text = gesture::act(gesture, text, drawn, decimals(gesture))?;
+        let (drawn, _) = Drawn::read(&self.source(text.as_str()));
+        Ok((text, drawn))
+    }
+
+    /// Returns to the text before; false if there is none.
+    pub(super) fn undo(&mut self) -> bool {
+        let Some(text) = self.before.pop() else {
+            return false;
+        };
+        self.undone.push(std::mem::take(&mut self.text));
+        self.take(text);
+        true
+    }
+
+    /// Returns to the text that undo left; false if there is none.
+    pub(super) fn redo(&mut self) -> bool {
+        let Some(text) = self.undone.pop() else {
+            return false;
+        };
+        self.before.push(std::mem::take(&mut self.text));
+        self.take(text);
+        true
+    }
+
+    /// Describes the document: its text, its problems, what is drawn at a scale.
+    pub(super) fn view(&self, scale: f64) -> Value {
+        let problems: Vec<Value> = self.problems.iter().map(|p| self.problem(p)).collect();
+        let mut view = match &self.drawn {
+            Some(drawn) => shown(drawn, scale),
+            None => json!({}),
+        };
+        let first = self.problems.iter().find(|p| p.severity == Severity::Error);
+        if let Some(problem) = first {
+            let line = self.text[..problem.place.start.min(self.text.len())]
+                .matches('\n')
+                .count();
+            view["status"] = json!({
+                "state": "broken",
+                "text": format!("line {}: {}", line + 1, problem.message),
+            });
+        }
+        view["text"] = json!(self.text);
+        view["problems"] = json!(problems);
+        view["is_stale"] = json!(self.is_stale);
+        view["can_undo"] = json!(!self.before.is_empty());
+        view["can_redo"] = json!(!self.undone.is_empty());
+        view
+    }
+
+    fn keep(&mut self) {
+        if self.before.len() == MOST {
+            self.before.remove(0);
+        }
+        self.before.push(self.text.clone());
+    }
+
+    fn take(&mut self, text: String) {
+        let (drawn, problems) = Drawn::read(&self.source(&text));
+        self.text = text;
+        self.problems = problems.into_iter().map(Problem::from).collect();
+        self.is_stale = drawn.is_none();
+        if drawn.is_some() {
+            self.drawn = drawn;
+        }
+    }
+
+    fn source(&self, text: &str) -> Source {
+        Source::new(&*self.name, text).with_files(self.files.clone())
+    }
+
+    fn problem(&self, problem: &Problem) -> Value {
+        // Scripts count in units of UTF-16.
+        let offset = |byte: usize| {
+            let byte = self.text.floor_char_boundary(byte);
+            self.text[..byte].encode_utf16().count()
+        };
+        json!({
+            "from": offset(problem.place.start),
+            "to": offset(problem.place.end),
+            "severity": problem.severity.as_str(),
+            "message": problem.message,
+            "help": problem.help,
+        })
+    }
+}
+
+/// Describes what is drawn: status, sketch and picture.
+fn shown(drawn: &Drawn, scale: f64) -> Value {
+    let picture = drawn.picture(scale).map(|picture| {
+        let mut places = Vec::new();
+        picture.add_places(&drawn.q, &mut places);
+        let mut description = picture.description();
+        description["places"] = json!(places);
+        description
+    });
+    json!({
+        "status": { "state": State::of(drawn).word(), "text": sentence(drawn) },
+        "sketch": sketch(drawn),
+        "picture": picture,
+    })
+}
+
+/// Returns the decimals of lengths of a gesture: as fine as the sheet shows.
+fn decimals(gesture: &Value) -> usize {
+    let decimals = gesture["decimals"].as_u64().unwrap_or(4);
+    usize::try_from(decimals).unwrap_or(4).min(9)
+}

@@ -1,0 +1,351 @@
+//! Gestures: what is drawn by hand, as changes of the mechanism's file.
+//!
+//! | file | gesture |
+//! |---|---|
+//! | `link` | a bar or plate through points |
+//! | `pivot` | a point is fixed to ground |
+//! | `slider` | a point slides along a line of ground or along a bar |
+//! | `cylinder` | a driver of the distance between two points |
+//! | `drive` | a joint is driven, or moves freely |
+//! | `shift` | points are moved: the geometry changes |
+//! | `put` | a value of the file is set or taken away |
+//! | `trace` | the path of a point is shown |
+//!
+//! A gesture says where it acts: at a point of the sheet, of ground, of a body or at a marker
+//! ([`Target`]). Its file changes the text by way of [`Editing`], and knows nothing of TOML.
+
+mod cylinder;
+mod drive;
+mod link;
+mod pivot;
+mod put;
+mod shift;
+mod slider;
+mod trace;
+
+use serde_json::Value;
+
+use super::drawn::{Drawn, inside};
+use super::names::Names;
+use super::number::{angle, length};
+use super::text::{TomlText, in_braces};
+use crate::mechanism::{Joint, MarkerId, Mechanism};
+
+/// Decimals of angles \[deg\].
+const ANGLE_DECIMALS: usize = 2;
+/// Part of the drawing's size within which two points are one.
+const SAME: f64 = 1e-6;
+
+/// The reason why a gesture changes nothing, for the reader.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Refusal {
+    /// A sentence.
+    Because(String),
+    /// A number of the file is an expression of this parameter: is that to change, or the number?
+    /// With the parameter's new value \[SI\].
+    Ask {
+        /// Name of the parameter.
+        parameter: String,
+        /// The expression in the file.
+        formula: String,
+        /// The value of the parameter that fits; `None` where no single one does.
+        value: Option<f64>,
+    },
+}
+
+impl From<&str> for Refusal {
+    fn from(reason: &str) -> Self {
+        Self::Because(reason.to_owned())
+    }
+}
+
+impl From<String> for Refusal {
+    fn from(reason: String) -> Self {
+        Self::Because(reason)
+    }
+}
+
+/// The place at which a gesture acts.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Target {
+    /// Global point \[m\].
+    pub(super) at: [f64; 2],
+    pub(super) onto: Onto,
+}
+
+/// The thing at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Onto {
+    /// The bare sheet.
+    Sheet,
+    /// Ground.
+    Ground,
+    /// A body, by its name.
+    Body(String),
+    /// A marker, by its path.
+    Marker(String),
+}
+
+/// A file that a gesture changes.
+pub(super) struct Editing<'a> {
+    pub(super) text: TomlText,
+    pub(super) drawn: &'a Drawn,
+    pub(super) names: Names,
+    /// Decimals of lengths.
+    decimals: usize,
+}
+
+/// Does a gesture.
+///
+/// # Errors
+///
+/// The reason why it cannot be done; the file stays as it is then.
+pub(super) fn act(
+    gesture: &Value,
+    text: TomlText,
+    drawn: &Drawn,
+    decimals: usize,
+) -> Result<TomlText, Refusal> {
+    let mut editing = Editing {
+        names: Names::of(&text),
+        text,
+        drawn,
+        decimals,
+    };
+    let kind = gesture["kind"].as_str().unwrap_or_default();
+    match kind {
+        "link" => link::link(&mut editing, &targets(gesture, "points")?),
+        "pivot" => pivot::pivot(&mut editing, name(gesture, "marker")?),
+        "slider" => slider::slider(
+            &mut editing,
+            &target(&gesture["target"])?,
+            number(gesture, "angle")?,
+        ),
+        "slot" => slider::slot(
+            &mut editing,
+            name(gesture, "marker")?,
+            name(gesture, "body")?,
+        ),
+        "cylinder" => cylinder::cylinder(&mut editing, &targets(gesture, "points")?),
+        "driver" => drive::driver(&mut editing, name(gesture, "joint")?),
+        "freedom" => drive::freedom(&mut editing, name(gesture, "joint")?),
+        "shift" => shift::shift(&mut editing, gesture),
+        "put" => put::put(&mut editing, gesture),
+        "trace" => trace::trace(&mut editing, name(gesture, "marker")?),
+        _ => Err(Refusal::Because(format!("no gesture is called `{kind}`"))),
+    }?;
+    Ok(editing.text)
+}
+
+impl<'a> Editing<'a> {
+    /// Returns the mechanism that is drawn.
+    ///
+    /// # Errors
+    ///
+    /// The sheet is empty.
+    pub(super) fn mechanism(&self) -> Result<&'a Mechanism, Refusal> {
+        let mechanism = self.drawn.mechanism.as_deref();
+        mechanism.ok_or_else(|| "the sheet is empty".into())
+    }
+
+    /// Returns a marker by its path.
+    pub(super) fn marker(&self, path: &str) -> Result<MarkerId, Refusal> {
+        let marker = self.drawn.marker(path);
+        marker.ok_or_else(|| format!("there is no marker `{path}`").into())
+    }
+
+    /// Returns a joint by its name.
+    pub(super) fn joint(&self, name: &str) -> Result<&'a Joint, Refusal> {
+        let mut joints = self.mechanism()?.joints.iter();
+        let joint = joints.find(|joint| joint.name == name);
+        joint.ok_or_else(|| format!("there is no joint `{name}`").into())
+    }
+
+    /// Returns the body that has a marker, `ground` for ground.
+    pub(super) fn body_of(&self, marker: MarkerId) -> Result<&'a str, Refusal> {
+        let mechanism = self.mechanism()?;
+        let body = mechanism.markers[marker.index()].body;
+        Ok(body.map_or("ground", |body| &mechanism.bodies[body.index()].name))
+    }
+
+    /// Returns the frame of a body, by its name.
+    pub(super) fn frame(&self, body: &str) -> Result<[f64; 3], Refusal> {
+        if body == "ground" {
+            return Ok([0.0; 3]);
+        }
+        let id = self.mechanism()?.body_id(body);
+        let id = id.ok_or_else(|| Refusal::Because(format!("there is no body `{body}`")))?;
+        Ok(self.drawn.frame(Some(id)))
+    }
+
+    /// Writes a length \[m\].
+    pub(super) fn length(&self, value: f64) -> String {
+        length(value, self.decimals)
+    }
+
+    /// Returns a length \[m\] rounded as it is written.
+    pub(super) fn rounded(&self, value: f64) -> f64 {
+        self.length(value).parse().unwrap_or(value)
+    }
+
+    /// Writes an angle \[rad\].
+    pub(super) fn angle(value: f64) -> String {
+        angle(super::number::within_turn(value), ANGLE_DECIMALS)
+    }
+
+    /// Writes a value of a coordinate \[m or rad\].
+    pub(super) fn value(&self, value: f64, is_angle: bool) -> String {
+        if is_angle {
+            Self::angle(value)
+        } else {
+            self.length(value)
+        }
+    }
+
+    /// Writes a marker in the frame of its body.
+    pub(super) fn place(&self, [x, y, turn]: [f64; 3]) -> String {
+        let [x, y] = [x, y].map(|x| self.length(x));
+        match &*Self::angle(turn) {
+            "0" => format!("[{x}, {y}]"),
+            turn => format!("[{x}, {y}, {turn}]"),
+        }
+    }
+
+    /// Writes an estimate.
+    pub(super) fn estimate(&self, [x, y, phi]: [f64; 3]) -> String {
+        let [x, y] = [x, y].map(|x| self.length(x));
+        format!("[{x}, {y}, {}]", Self::angle(phi))
+    }
+
+    /// Adds a marker to a body or to ground, in its frame; returns its path.
+    pub(super) fn add_marker(&mut self, body: &str, name: &str, inside: [f64; 3]) -> String {
+        let place = self.place(inside);
+        match body {
+            "ground" => self.text.set(&["ground", "markers", name], &place),
+            body => self.text.set(&["bodies", body, "markers", name], &place),
+        }
+        format!("{body}.{name}")
+    }
+
+    /// Returns the marker of a target, which is added if it is none yet; a target on the bare sheet
+    /// becomes a point of ground.
+    pub(super) fn marker_at(&mut self, target: &Target) -> Result<String, Refusal> {
+        let body = match &target.onto {
+            Onto::Marker(path) => {
+                self.marker(path)?;
+                return Ok(path.clone());
+            }
+            Onto::Body(body) => body.clone(),
+            Onto::Ground | Onto::Sheet => "ground".to_owned(),
+        };
+        let [x, y] = inside(self.frame(&body)?, target.at);
+        let letter = self.names.new_letter();
+        Ok(self.add_marker(&body, &letter, [x, y, 0.0]))
+    }
+
+    /// Adds a body with markers in its frame, whose estimate is given; returns its name.
+    pub(super) fn add_body(
+        &mut self,
+        word: &str,
+        markers: &[(String, [f64; 3])],
+        frame: [f64; 3],
+    ) -> String {
+        let name = self.names.new_name(word);
+        let entries: Vec<(String, String)> = (markers.iter())
+            .map(|(marker, inside)| (marker.clone(), self.place(*inside)))
+            .collect();
+        let estimate = self.estimate(frame);
+        match in_braces("markers", &entries) {
+            Some(braces) => {
+                let lines = format!("markers = {braces}\nestimate = {estimate}");
+                self.text.add_section(&["bodies", &name], &lines);
+            }
+            None => {
+                let lines = format!("estimate = {estimate}");
+                self.text.add_section(&["bodies", &name], &lines);
+                let lines: Vec<String> = (entries.iter())
+                    .map(|(marker, place)| format!("{marker} = {place}"))
+                    .collect();
+                let section = ["bodies", &name, "markers"];
+                self.text.add_section(&section, &lines.join("\n"));
+            }
+        }
+        name
+    }
+
+    /// Adds a joint between two markers; returns its name.
+    pub(super) fn join(&mut self, word: &str, kind: &str, [from, to]: [&str; 2]) -> String {
+        let name = self.names.joint_at(word);
+        let value = format!("{{ type = \"{kind}\", markers = [\"{from}\", \"{to}\"] }}");
+        self.text.set(&["joints", &name], &value);
+        name
+    }
+
+    /// Returns all markers that are pinned to a marker, itself among them.
+    pub(super) fn pinned_to(&self, marker: MarkerId) -> Result<Vec<MarkerId>, Refusal> {
+        Ok(self.drawn.pinned_to(marker))
+    }
+
+    /// Returns the distance within which two points are one \[m\].
+    pub(super) fn same(&self) -> f64 {
+        SAME * self.drawn.size() + f64::MIN_POSITIVE
+    }
+}
+
+/// Returns the last part of a marker's path.
+pub(super) fn marker_name(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+/// Returns a finite number of a gesture.
+pub(super) fn number(gesture: &Value, key: &str) -> Result<f64, Refusal> {
+    let number = gesture[key].as_f64().filter(|number| number.is_finite());
+    number.ok_or_else(|| format!("the gesture lacks the number `{key}`").into())
+}
+
+/// Returns a name of a gesture.
+pub(super) fn name<'a>(gesture: &'a Value, key: &str) -> Result<&'a str, Refusal> {
+    let name = gesture[key].as_str();
+    name.ok_or_else(|| format!("the gesture lacks the name `{key}`").into())
+}
+
+/// Returns a point of a gesture \[m\].
+pub(super) fn point(value: &Value) -> Result<[f64; 2], Refusal> {
+    let number = |index: usize| value[index].as_f64().filter(|number| number.is_finite());
+    match (number(0), number(1)) {
+        (Some(x), Some(y)) => Ok([x, y]),
+        _ => Err("the gesture lacks a point".into()),
+    }
+}
+
+fn targets(gesture: &Value, key: &str) -> Result<Vec<Target>, Refusal> {
+    let list = gesture[key].as_array().map_or(&[][..], Vec::as_slice);
+    list.iter().map(target).collect()
+}
+
+fn target(value: &Value) -> Result<Target, Refusal> {
+    let word = |key: &str| value[key].as_str().map(str::to_owned);
+    let onto = match (word("marker"), word("body")) {
+        (Some(marker), _) => Onto::Marker(marker),
+        (None, Some(body)) => Onto::Body(body),
+        (None, None) if value["ground"].as_bool() == Some(true) => Onto::Ground,
+        (None, None) => Onto::Sheet,
+    };
+    Ok(Target {
+        at: point(&value["at"])?,
+        onto,
+    })
+}
+
+/// Returns a text whose estimates are near the places at which its mechanism is drawn, so that it
+/// closes the same way again.
+pub(super) fn settled(text: TomlText, drawn: &Drawn, decimals: usize) -> TomlText {
+    let mut editing = Editing {
+        names: Names::of(&text),
+        text,
+        drawn,
+        decimals,
+    };
+    shift::refresh_estimates(&mut editing);
+    editing.text
+}

@@ -1,0 +1,31 @@
+//! The studio: a mechanism is drawn by hand, and its file is written along.
+//!
+//! The text of the file is the truth. A gesture changes the text as a person would, comments and
+//! layout stay, and the drawing follows from the text; what is typed goes the same way. Undo goes
+//! through texts. [`Host`] answers requests in JSON, which the studio's scripts send, and passes on
+//! those of [`page`](crate::page), by which the mechanism moves.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `text` | the text of a file, changed in place |
+//! | `names`, `number` | new names, and numbers as a person writes them |
+//! | `drawn` | the mechanism where its file starts it |
+//! | `gesture` | gestures, one file each |
+//! | `sketch` | what is drawn, for the pointer to find |
+//! | `status` | what a half-done drawing lacks |
+//! | `document` | a file with its undo |
+//! | `host` | [`Host`]: requests in JSON |
+
+mod document;
+mod drawn;
+mod gesture;
+mod host;
+mod names;
+mod number;
+mod sketch;
+mod status;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use host::Host;

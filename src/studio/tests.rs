@@ -1,0 +1,216 @@
+//! Drawings by gestures, and the files that come out.
+
+use serde_json::{Value, json};
+
+use super::host::Host;
+
+pub(super) const EMPTY: &str = "format = 1\nname = \"mechanism\"\n";
+
+/// A studio with an empty sheet.
+pub(super) fn studio(text: &str) -> Host {
+    let mut host = Host::default();
+    let view = ask(
+        &mut host,
+        &json!({ "do": "begin", "name": "a.toml", "text": text }),
+    );
+    assert!(
+        view["problems"].as_array().is_some_and(Vec::is_empty),
+        "{view}"
+    );
+    host
+}
+
+pub(super) fn ask(host: &mut Host, request: &Value) -> Value {
+    host.answer(&request.to_string())
+}
+
+/// Does a gesture that is to succeed.
+pub(super) fn act(host: &mut Host, gesture: &Value) -> Value {
+    let answer = ask(
+        host,
+        &json!({ "do": "gesture", "keep": true, "gesture": gesture }),
+    );
+    assert!(answer["refused"].is_null(), "{gesture}: {answer}");
+    assert!(
+        answer["problems"].as_array().is_some_and(Vec::is_empty),
+        "{}\n{answer}",
+        host.text()
+    );
+    answer
+}
+
+fn state(view: &Value) -> &str {
+    view["status"]["state"].as_str().unwrap_or_default()
+}
+
+#[test]
+fn a_four_bar_is_drawn_in_four_gestures() {
+    let mut host = studio(EMPTY);
+    let ground = |x: f64, y: f64| json!({ "at": [x, y], "ground": true });
+    let sheet = |x: f64, y: f64| json!({ "at": [x, y] });
+    let marker = |path: &str| json!({ "at": [0, 0], "marker": path });
+    let view = act(
+        &mut host,
+        &json!({ "kind": "link", "points": [ground(0.0, 0.0), sheet(0.05, 0.0866)] }),
+    );
+    assert_eq!(state(&view), "undriven");
+    act(
+        &mut host,
+        &json!({ "kind": "link", "points": [marker("link.B"), sheet(0.25, 0.25)] }),
+    );
+    let view = act(
+        &mut host,
+        &json!({ "kind": "link", "points": [marker("link_2.C"), ground(0.4, 0.0)] }),
+    );
+    assert_eq!(
+        view["status"]["text"],
+        "1 degree of freedom: add a driver at a joint, or let it move freely"
+    );
+    let view = act(&mut host, &json!({ "kind": "driver", "joint": "A" }));
+    assert_eq!(state(&view), "driven");
+    insta::assert_snapshot!(host.text());
+    // Undo goes back to the first bytes, redo to the last.
+    let last = host.text().to_owned();
+    for _ in 0..4 {
+        ask(&mut host, &json!({ "do": "text_undo" }));
+    }
+    assert_eq!(host.text(), EMPTY);
+    for _ in 0..4 {
+        ask(&mut host, &json!({ "do": "text_redo" }));
+    }
+    assert_eq!(host.text(), last);
+}
+
+#[test]
+fn a_slider_crank_is_drawn_from_its_points() {
+    let mut host = studio(EMPTY);
+    act(
+        &mut host,
+        &json!({ "kind": "link", "points": [{ "at": [0, 0], "ground": true }, { "at": [0.04, 0.03] }] }),
+    );
+    act(
+        &mut host,
+        &json!({ "kind": "link", "points": [{ "at": [0, 0], "marker": "link.B" }, { "at": [0.18, 0.0] }] }),
+    );
+    let slide = json!({ "at": [0, 0], "marker": "link_2.C" });
+    act(
+        &mut host,
+        &json!({ "kind": "slider", "target": slide, "angle": 0.0 }),
+    );
+    let view = act(&mut host, &json!({ "kind": "driver", "joint": "A" }));
+    assert_eq!(state(&view), "driven");
+    insta::assert_snapshot!(host.text());
+}
+
+#[test]
+fn a_moved_point_changes_lengths_estimates_and_starts_and_keeps_comments() {
+    let shipped = include_str!("../../mechanisms/pendulum.toml").replace("\r\n", "\n");
+    let mut host = studio(&shipped);
+    let by = [0.1, 0.05];
+    let gesture = json!({ "kind": "shift", "markers": ["rod.tip"], "by": by });
+    let answer = ask(
+        &mut host,
+        &json!({ "do": "gesture", "keep": true, "gesture": gesture }),
+    );
+    // The length is a parameter, which the reader is asked about.
+    assert_eq!(answer["refused"]["parameter"], "length", "{answer}");
+    assert_eq!(host.text(), shipped);
+}
+
+#[test]
+fn a_moved_pin_takes_both_bars_along() {
+    let mut host = studio(EMPTY);
+    act(
+        &mut host,
+        &json!({ "kind": "link", "points": [{ "at": [0, 0], "ground": true }, { "at": [0.3, 0.4] }] }),
+    );
+    act(
+        &mut host,
+        &json!({ "kind": "link", "points": [{ "at": [0, 0], "marker": "link.B" }, { "at": [0.6, 0.0], "ground": true }] }),
+    );
+    let view = act(
+        &mut host,
+        &json!({ "kind": "shift", "markers": ["link.B"], "by": [-0.3, 0.0] }),
+    );
+    // Two bars and three pins are rigid.
+    assert_eq!(state(&view), "rigid");
+    let points = view["sketch"]["points"]
+        .as_array()
+        .expect("there are points");
+    let at = |marker: &str| {
+        let has = |point: &&Value| {
+            point["markers"]
+                .as_array()
+                .is_some_and(|m| m.contains(&json!(marker)))
+        };
+        let point = points.iter().find(has).expect("it is drawn");
+        [0, 1].map(|k| point["at"][k].as_f64().expect("a number"))
+    };
+    let [x, y] = at("link_2.B");
+    assert!(x.abs() < 1e-4 && (y - 0.4).abs() < 1e-4, "{x} {y}");
+    insta::assert_snapshot!(host.text());
+}
+
+#[test]
+fn a_typed_error_keeps_the_drawing_and_says_where_it_is() {
+    let shipped = include_str!("../../mechanisms/four_bar.toml");
+    let mut host = studio(shipped);
+    let broken = shipped.replacen("\"crank.A\"", "\"crank.Z\"", 1);
+    let view = ask(&mut host, &json!({ "do": "type", "text": broken }));
+    assert_eq!(view["is_stale"], true);
+    assert_eq!(state(&view), "broken");
+    let problem = &view["problems"][0];
+    let units: Vec<u16> = broken.encode_utf16().collect();
+    let place =
+        |key: &str| usize::try_from(problem[key].as_u64().expect("a place")).expect("small");
+    let marked = String::from_utf16(&units[place("from")..place("to")]).expect("whole letters");
+    assert_eq!(marked, "\"crank.Z\"");
+    assert!(
+        view["sketch"]["points"]
+            .as_array()
+            .is_some_and(|points| !points.is_empty())
+    );
+    let gesture = json!({ "kind": "driver", "joint": "A" });
+    let answer = ask(
+        &mut host,
+        &json!({ "do": "gesture", "keep": true, "gesture": gesture }),
+    );
+    assert_eq!(
+        answer["refused"]["message"],
+        "the text has an error: mend it first"
+    );
+}
+
+#[test]
+fn every_shipped_mechanism_is_drawn_and_ready() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms");
+    let files = std::fs::read_dir(folder).expect("the folder is there");
+    let mut count = 0;
+    for file in files.map(|file| file.expect("a file").path()) {
+        if file.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).expect("it is text");
+        let table = std::fs::read_to_string(file.with_extension("csv")).unwrap_or_default();
+        let track = std::fs::read_to_string(format!("{folder}/garage_door_track.csv"));
+        let points = std::fs::read_to_string(format!("{folder}/cam_points.csv"));
+        let files = json!([
+            ["garage_door_track.csv", track.unwrap_or_default()],
+            ["cam_points.csv", points.unwrap_or(table)],
+        ]);
+        let mut host = Host::default();
+        let view = ask(
+            &mut host,
+            &json!({ "do": "begin", "name": "a", "text": text, "files": files }),
+        );
+        let state = state(&view);
+        assert!(
+            ["driven", "free"].contains(&state),
+            "{}: {}",
+            file.display(),
+            view["status"]
+        );
+        count += 1;
+    }
+    assert!(count > 50);
+}

@@ -1,0 +1,551 @@
+// Design: the pointer and the keys draw, select and move; the solver answers with text and picture.
+
+import { add, say } from "./controls.js";
+import { ask as askFor } from "./dialogs.js";
+import { find } from "./snap.js";
+import { TOOLS, ownMarker, unfit } from "./tools.js";
+
+// Way of the pointer from which a press is a drag [pixels].
+const DRAG = 4;
+// Time for which a finger rests to open the menu [ms].
+const LONG_PRESS = 550;
+const TURN = Math.PI / 180;
+
+export class Design {
+  /** `studio` asks the solver and shows its views; `sheet` is drawn on. */
+  constructor(studio, sheet) {
+    this.studio = studio;
+    this.sheet = sheet;
+    this.tool = "select";
+    // What was found at the clicks so far.
+    this.found = [];
+    this.pointers = new Map();
+    this.answers = new Map();
+    sheet.onLook = () => this.mark();
+    this.typed = this.makeTyped();
+    this.connect();
+  }
+
+  get sketch() {
+    return this.studio.view.sketch ?? { points: [], bodies: [], joints: [], drivers: [] };
+  }
+
+  /** Takes a tool by its name. */
+  take(name) {
+    this.drop();
+    this.tool = name;
+    this.studio.showTool(name);
+    this.hint();
+  }
+
+  /** Gives up what was begun. */
+  drop() {
+    this.found = [];
+    this.typed.hidden = true;
+    if (this.drag?.shown) {
+      this.studio.showAgain();
+    }
+    this.drag = null;
+    this.mark();
+  }
+
+  hint() {
+    const { hints } = TOOLS[this.tool];
+    this.studio.hint(hints[Math.min(this.found.length, hints.length - 1)]);
+  }
+
+  // -- the pointer ---------------------------------------------------------------------------
+
+  connect() {
+    const { place } = this.sheet;
+    place.addEventListener("pointerdown", (event) => this.down(event));
+    place.addEventListener("pointermove", (event) => this.moved(event));
+    place.addEventListener("pointerup", (event) => this.up(event));
+    place.addEventListener("pointercancel", (event) => this.cancel(event));
+    place.addEventListener("pointerleave", () => {
+      if (!this.drag) {
+        this.over = null;
+        this.mark();
+      }
+    });
+    place.addEventListener("contextmenu", (event) => {
+      event.preventDefault();
+      this.menu(event);
+    });
+    place.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        const lines = event.deltaMode === 1 ? 16 : 1;
+        this.sheet.zoom(Math.exp(-0.0015 * lines * event.deltaY), this.sheet.placeOf(event));
+      },
+      { passive: false },
+    );
+  }
+
+  look(event) {
+    const chosen = TOOLS[this.tool];
+    const origin = chosen.typed && this.found.length ? this.found[this.found.length - 1].at : null;
+    return find(this.sheet, this.sketch, this.sheet.placeOf(event), {
+      kind: event.pointerType,
+      origin: this.drag?.origin ?? origin,
+      free: event.shiftKey || event.altKey,
+      without: this.drag?.without ?? [],
+    });
+  }
+
+  down(event) {
+    this.sheet.place.focus({ preventScroll: true });
+    this.sheet.place.setPointerCapture(event.pointerId);
+    this.pointers.set(event.pointerId, this.sheet.placeOf(event));
+    this.studio.closeMenu();
+    if (this.pointers.size === 2) {
+      this.drop();
+      this.press = null;
+      return;
+    }
+    if (event.button === 2) {
+      return;
+    }
+    const at = this.sheet.placeOf(event);
+    const found = this.look(event);
+    this.press = { at, found, pans: event.button === 1 || this.holds === " " };
+    if (event.pointerType === "touch") {
+      this.waiting = setTimeout(() => this.press && !this.press.moves && this.menu(event), LONG_PRESS);
+    }
+  }
+
+  moved(event) {
+    const now = this.sheet.placeOf(event);
+    const before = this.pointers.get(event.pointerId);
+    if (before && this.pointers.size === 2) {
+      this.pinch(event.pointerId, before, now);
+      return;
+    }
+    if (before) {
+      this.pointers.set(event.pointerId, now);
+    }
+    const { press } = this;
+    if (press && !press.moves && Math.hypot(now[0] - press.at[0], now[1] - press.at[1]) > DRAG) {
+      press.moves = true;
+      clearTimeout(this.waiting);
+      if (this.tool === "select" && !press.pans) {
+        this.begin(press.found);
+      }
+    }
+    if (press?.moves && (press.pans || (this.tool === "select" && !this.drag))) {
+      this.sheet.pan([now[0] - before[0], now[1] - before[1]]);
+      return;
+    }
+    this.over = this.look(event);
+    if (this.drag) {
+      this.dragTo(this.over);
+    } else {
+      this.mark();
+    }
+  }
+
+  up(event) {
+    clearTimeout(this.waiting);
+    this.pointers.delete(event.pointerId);
+    const { press } = this;
+    this.press = null;
+    if (!press || event.button === 2) {
+      return;
+    }
+    if (this.drag) {
+      this.end();
+    } else if (!press.moves || this.tool !== "select") {
+      if (press.pans) {
+        return;
+      }
+      const found = press.moves ? this.look(event) : press.found;
+      // A press that moves draws from its first place to its last.
+      if (press.moves && this.found.length === 0 && TOOLS[this.tool].most > 1) {
+        this.click(press.found, event);
+      }
+      this.click(found, event);
+    }
+  }
+
+  cancel(event) {
+    clearTimeout(this.waiting);
+    this.pointers.delete(event.pointerId);
+    this.press = null;
+    this.drop();
+  }
+
+  pinch(id, before, now) {
+    const other = [...this.pointers].find(([key]) => key !== id)[1];
+    const far = (a) => Math.hypot(a[0] - other[0], a[1] - other[1]);
+    const middle = [0, 1].map((k) => 0.5 * (now[k] + other[k]));
+    this.sheet.pan([0.5 * (now[0] - before[0]), 0.5 * (now[1] - before[1])]);
+    this.sheet.zoom(far(now) / Math.max(1, far(before)), middle);
+    this.pointers.set(id, now);
+  }
+
+  // -- clicks --------------------------------------------------------------------------------
+
+  async click(found, event = {}) {
+    const tool = TOOLS[this.tool];
+    if (this.tool === "select") {
+      this.studio.select(this.thing(found, event));
+      return;
+    }
+    const first = this.found[0];
+    const closes = tool.least > 2 && this.found.length >= tool.least && found.point === first.point && near(found.at, first.at);
+    if (closes) {
+      this.finish();
+      return;
+    }
+    const why = unfit(tool, this.found.length, found);
+    if (why) {
+      this.studio.say(why);
+      return;
+    }
+    found.ground = event.ctrlKey || event.metaKey || this.holds === "g";
+    if (tool.only?.[this.found.length] === "joint") {
+      found.joint = await this.chooseJoint(found.point.joints, event);
+      if (!found.joint) {
+        return;
+      }
+    }
+    const last = this.found[this.found.length - 1];
+    if (last && near(last.at, found.at) && tool.only === undefined) {
+      this.studio.say("This is the point that was clicked before: click another one");
+      return;
+    }
+    this.found.push(found);
+    if (this.found.length >= tool.most) {
+      this.finish();
+      return;
+    }
+    this.hint();
+    this.mark();
+    this.offerTyped();
+  }
+
+  /** Ends a tool whose clicks are many. */
+  finish() {
+    const tool = TOOLS[this.tool];
+    if (this.found.length < tool.least) {
+      this.studio.say(tool.hints[Math.min(this.found.length, tool.hints.length - 1)]);
+      return;
+    }
+    const gesture = tool.gesture(this.found);
+    this.drop();
+    this.studio.gesture(gesture);
+    this.hint();
+  }
+
+  /** Asks which of several joints at a point is meant. */
+  async chooseJoint(names, event) {
+    const joints = names.map((name) => this.sketch.joints.find((joint) => joint.name === name));
+    const moving = joints.filter((joint) => joint?.drives);
+    if (moving.length === 0) {
+      this.studio.say(`Joint \`${names[0]}\` has no coordinate of its own: choose a pin or a slide`);
+      return null;
+    }
+    if (moving.length === 1) {
+      return moving[0].name;
+    }
+    const items = moving.map((joint) => [
+      `${joint.type === "revolute" ? "Pin" : "Slide"} ${joint.name}: ${joint.markers.join(" – ")}`,
+      joint.name,
+    ]);
+    return this.studio.choose(items, event);
+  }
+
+  // -- selection -----------------------------------------------------------------------------
+
+  /** Returns the thing at a place, by its names; clicks on one point go through what is there. */
+  thing(found) {
+    if (found.point) {
+      return { kind: "point", markers: found.point.markers, joints: found.point.joints };
+    }
+    if (found.body) {
+      return { kind: "body", name: found.body };
+    }
+    return null;
+  }
+
+  // -- dragging ------------------------------------------------------------------------------
+
+  begin(found) {
+    if (found.point) {
+      const { markers } = found.point;
+      this.drag = { markers: [ownMarker(found.point)], from: found.at, without: markers, point: found.point };
+    } else if (found.body) {
+      const body = this.sketch.bodies.find((each) => each.name === found.body);
+      this.drag = { markers: body.markers, from: found.at, without: body.markers, body: found.body };
+    }
+  }
+
+  gestureTo(found) {
+    const { drag } = this;
+    const onto = drag.point && found.point ? found.point.markers[0] : null;
+    const by = [found.at[0] - drag.from[0], found.at[1] - drag.from[1]];
+    const through = this.answers.get(drag.asks) ?? undefined;
+    return onto
+      ? { kind: "join", marker: drag.markers[0], onto, through }
+      : { kind: "shift", markers: drag.markers, by, through };
+  }
+
+  // One drawing per picture, for the last place of the pointer.
+  dragTo(found) {
+    this.drag.to = found;
+    if (this.drag.waits) {
+      return;
+    }
+    this.drag.waits = true;
+    requestAnimationFrame(() => {
+      if (!this.drag) {
+        return;
+      }
+      this.drag.waits = false;
+      const gesture = this.gestureTo(this.drag.to);
+      const answer = this.studio.preview(gesture.through ? gesture : { ...gesture, through: "parameter" });
+      this.drag.shown ||= !answer.refused;
+      this.mark();
+    });
+  }
+
+  async end() {
+    const { drag } = this;
+    if (!drag.to) {
+      this.drag = null;
+      return;
+    }
+    const gesture = this.gestureTo(drag.to);
+    this.drag = null;
+    let answer = this.studio.gesture(gesture, false);
+    while (answer.refused?.parameter) {
+      const { parameter, formula, value } = answer.refused;
+      const known = this.answers.get(parameter);
+      const through = known && (known !== "parameter" || value !== null) ? known : await askFor(this.studio.root, { parameter, formula, value, unit: this.studio.unit });
+      if (!through) {
+        break;
+      }
+      this.answers.set(parameter, through);
+      answer = this.studio.gesture({ ...gesture, through }, false);
+    }
+    if (answer.refused) {
+      this.studio.showAgain();
+      if (answer.refused.message) {
+        this.studio.say(answer.refused.message);
+      }
+    }
+    this.mark();
+  }
+
+  // -- typed lengths -------------------------------------------------------------------------
+
+  makeTyped() {
+    const form = add(this.sheet.place, "form", { className: "typed", hidden: true });
+    const field = (name) => {
+      const label = add(form, "label", { textContent: `${name} ` });
+      return add(label, "input", { type: "text", inputMode: "decimal", size: 8, autocomplete: "off" });
+    };
+    this.long = field("Length");
+    this.turn = field("Angle");
+    add(form, "button", { type: "submit", textContent: "Set" });
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.takeTyped();
+    });
+    for (const kind of ["pointerdown", "pointermove", "pointerup"]) {
+      form.addEventListener(kind, (event) => event.stopPropagation());
+    }
+    return form;
+  }
+
+  offerTyped() {
+    const tool = TOOLS[this.tool];
+    this.typed.hidden = !(tool.typed && this.found.length);
+    this.long.value = "";
+    this.turn.value = "";
+    this.placeTyped();
+  }
+
+  placeTyped() {
+    if (!this.typed.hidden && this.found.length) {
+      const [u, v] = this.sheet.toScreen(this.found[this.found.length - 1].at);
+      const [width, height] = this.sheet.size;
+      this.typed.style.left = `${Math.max(4, Math.min(width - 210, u + 16))}px`;
+      this.typed.style.top = `${Math.max(4, Math.min(height - 84, v + 18))}px`;
+    }
+  }
+
+  takeTyped() {
+    const { unit } = this.studio;
+    const from = this.found[this.found.length - 1].at;
+    const to = this.over?.at ?? [from[0] + 1, from[1]];
+    const ahead = [to[0] - from[0], to[1] - from[1]];
+    const length = this.long.value.trim() === "" ? Math.hypot(...ahead) : lengthOf(this.long.value, unit);
+    const angle = this.turn.value.trim() === "" ? Math.atan2(ahead[1], ahead[0]) : angleOf(this.turn.value);
+    if (!(length > 0) || !Number.isFinite(angle)) {
+      this.studio.say(`Type a length such as \`120\` or \`12 cm\`, and an angle such as \`30\``);
+      return;
+    }
+    this.sheet.place.focus({ preventScroll: true });
+    this.click({ at: [from[0] + length * Math.cos(angle), from[1] + length * Math.sin(angle)], guides: [] });
+  }
+
+  // -- marks ---------------------------------------------------------------------------------
+
+  mark() {
+    const { sheet } = this;
+    sheet.clear();
+    this.markSelection();
+    this.placeTyped();
+    if (!this.studio.isDesign) {
+      return;
+    }
+    const tool = TOOLS[this.tool];
+    const { over } = this;
+    if (over && !this.drag && (this.tool !== "select" || over.point || over.body)) {
+      this.markFound(over);
+    }
+    if (this.drag?.to) {
+      this.markFound(this.drag.to);
+    }
+    const points = this.found.map((each) => each.at);
+    if (points.length) {
+      const ahead = over && points.length < tool.most ? [...points, over.at] : points;
+      ahead.slice(1).forEach((at, index) => sheet.line(ahead[index], at, "draft"));
+      points.forEach((at) => sheet.ring(at, "draft", 5));
+      if (over && ahead.length > points.length) {
+        const [from, to] = [points[points.length - 1], over.at];
+        const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+        const { name, factor } = this.studio.unit;
+        const long = Number((Math.hypot(dx, dy) / factor).toPrecision(4));
+        const turn = Number((Math.atan2(dy, dx) / TURN).toFixed(1));
+        sheet.words(to, `${long} ${name}  ${turn}°`);
+      }
+    }
+  }
+
+  markFound({ at, point, body, guides }) {
+    const { sheet } = this;
+    for (const [from, k] of guides) {
+      if (k === null) {
+        sheet.line(from, at, "guide");
+      } else {
+        sheet.line(from, at, "guide");
+      }
+    }
+    if (point) {
+      sheet.ring(at, "found", 11);
+    } else if (body) {
+      sheet.ring(at, "found", 6);
+      const bars = this.sketch.bodies.find((each) => each.name === body)?.bars ?? [];
+      bars.forEach(([from, to]) => sheet.line(from, to, "found bar"));
+    } else if (this.tool !== "select") {
+      sheet.ring(at, "place", 3);
+    }
+  }
+
+  markSelection() {
+    const { selection } = this.studio;
+    const { sheet, sketch } = this;
+    if (selection?.kind === "point") {
+      const point = sketch.points.find((each) => each.markers.includes(selection.markers[0]));
+      if (point) {
+        sheet.ring(point.at, "selected", 13);
+      }
+    }
+    if (selection?.kind === "body") {
+      const body = sketch.bodies.find((each) => each.name === selection.name);
+      body?.bars.forEach(([from, to]) => sheet.line(from, to, "selected bar"));
+    }
+  }
+
+  // -- menu and keys -------------------------------------------------------------------------
+
+  menu(event) {
+    this.press = null;
+    this.drop();
+    const found = this.look(event);
+    this.studio.select(this.thing(found));
+    this.studio.openMenu(found, event);
+  }
+
+  /** Takes a key; true if it was one of design. */
+  key(event) {
+    const { key } = event;
+    if (event.ctrlKey || event.metaKey || event.altKey) {
+      return false;
+    }
+    if (key === "Escape") {
+      if (this.found.length || this.drag) {
+        this.drop();
+        this.hint();
+      } else {
+        this.take("select");
+        this.studio.select(null);
+      }
+      return true;
+    }
+    if (key === "Enter" && this.found.length) {
+      if (TOOLS[this.tool].most > 10) {
+        this.finish();
+      }
+      return true;
+    }
+    if (this.found.length && TOOLS[this.tool].typed && /^[0-9.,]$/.test(key)) {
+      this.long.focus();
+      this.long.value = key;
+      return true;
+    }
+    if ((key === "Delete" || key === "Backspace") && this.studio.selection) {
+      this.studio.removeSelected();
+      return true;
+    }
+    if (key === " " || key === "g") {
+      this.holds = key;
+    }
+    const tool = Object.keys(TOOLS).find((name) => TOOLS[name].key === key.toLowerCase());
+    if (tool && !(key === "g" && this.found.length)) {
+      this.take(tool);
+      return true;
+    }
+    const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    if (arrows[key] && this.studio.selection) {
+      this.nudge(arrows[key].map((part) => part * this.sheet.step * (event.shiftKey ? 0.1 : 1)));
+      return true;
+    }
+    return false;
+  }
+
+  keyUp() {
+    this.holds = null;
+  }
+
+  /** Moves what is selected by a way [m]. */
+  nudge(by) {
+    const { selection } = this.studio;
+    const body = selection.kind === "body" && this.sketch.bodies.find((each) => each.name === selection.name);
+    const markers = body ? body.markers : selection.markers?.slice(0, 1);
+    if (markers) {
+      this.drag = { markers, from: [0, 0], to: { at: by, guides: [] } };
+      this.end();
+    }
+  }
+}
+
+function near(a, b) {
+  return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-12;
+}
+
+/** Reads a length: a number in the sheet's unit, or with a unit of its own. */
+export function lengthOf(text, unit) {
+  const match = text.trim().replace(",", ".").match(/^([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*(mm|cm|m|in|inch)?$/i);
+  const factors = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254, inch: 0.0254 };
+  return match ? Number(match[1]) * (match[2] ? factors[match[2].toLowerCase()] : unit.factor) : NaN;
+}
+
+/** Reads an angle in degrees. */
+export function angleOf(text) {
+  const match = text.trim().replace(",", ".").match(/^([-+]?[0-9.]+)\s*(°|deg)?$/i);
+  return match ? Number(match[1]) * TURN : NaN;
+}
