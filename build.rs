@@ -1,5 +1,5 @@
-//! Compiles the C hosts of the tests, and lists the runtime libraries and the solver for pages that
-//! the program carries.
+//! Compiles the C hosts of the tests, and lists the runtime libraries and the solvers for browsers
+//! that the program carries.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -77,7 +77,7 @@ fn compile_host(headers: &Path, source: &str, name: &str) {
 /// its own platform, which is built here: `cargo install` installs nothing but the program.
 fn embed_libraries() {
     let out = PathBuf::from(variable("OUT_DIR"));
-    let mut page: Option<PathBuf> = None;
+    let mut solvers: Vec<(&str, PathBuf)> = Vec::new();
     let mut libraries: Vec<(&str, PathBuf)> = Vec::new();
     // Debug builds have the library beside them, and are not built again for an environment.
     if variable("PROFILE") == "release" {
@@ -94,10 +94,12 @@ fn embed_libraries() {
                         libraries.push((platform, library));
                     }
                 }
-                let solver = Path::new(&folder).join("page.wasm");
-                if solver.is_file() {
-                    println!("cargo::rerun-if-changed={}", solver.display());
-                    page = Some(solver);
+                for name in ["page.wasm", "studio.wasm"] {
+                    let solver = Path::new(&folder).join(name);
+                    if solver.is_file() {
+                        println!("cargo::rerun-if-changed={}", solver.display());
+                        solvers.push((name, solver));
+                    }
                 }
                 assert!(
                     !libraries.is_empty(),
@@ -108,28 +110,29 @@ fn embed_libraries() {
             None => libraries.extend(build_library(&out)),
         }
     }
-    let mut list = String::from(
+    write_list(
+        &out.join("embedded_libraries.rs"),
         "/// The runtime libraries that the program carries, by the names of their platforms.\n\
-         static EMBEDDED_LIBRARIES: &[(&str, &[u8])] = &[\n",
+         static EMBEDDED_LIBRARIES",
+        libraries,
     );
-    for (platform, path) in libraries {
-        let path = fs::canonicalize(path).expect("the library was found");
-        writeln!(list, "    ({platform:?}, include_bytes!({path:?})),").expect("memory suffices");
+    write_list(
+        &out.join("embedded_solvers.rs"),
+        "/// The solvers for browsers that the program carries, by the names of their files.\n\
+         static EMBEDDED_SOLVERS",
+        solvers,
+    );
+}
+
+/// Writes the declaration of a list of files, by names.
+fn write_list(to: &Path, declaration: &str, files: Vec<(&str, PathBuf)>) {
+    let mut list = format!("{declaration}: &[(&str, &[u8])] = &[\n");
+    for (name, path) in files {
+        let path = fs::canonicalize(path).expect("the file was found");
+        writeln!(list, "    ({name:?}, include_bytes!({path:?})),").expect("memory suffices");
     }
     list.push_str("];\n");
-    let page = page.map_or_else(
-        || "None".to_owned(),
-        |path| {
-            let path = fs::canonicalize(path).expect("the solver was found");
-            format!("Some(include_bytes!({path:?}))")
-        },
-    );
-    let page = format!(
-        "/// The solver for pages that the program carries.\n\
-         static EMBEDDED_SOLVER: Option<&[u8]> = {page};\n"
-    );
-    fs::write(out.join("embedded_solver.rs"), page).expect("OUT_DIR can be written");
-    fs::write(out.join("embedded_libraries.rs"), list).expect("OUT_DIR can be written");
+    fs::write(to, list).expect("OUT_DIR can be written");
 }
 
 /// Builds the library for the program's own platform.

@@ -12,7 +12,7 @@ import { Broken, Solver, unpack } from "./solver.js";
 const ARROW_UNITS = { velocity: "m/s", acceleration: "m/s²", force: "N" };
 const LENGTHS_AND_ANGLES = ["m", "cm", "mm", "inch", "rad", "deg"];
 
-class Live {
+export class Live {
   constructor(root, module, file) {
     this.root = root;
     this.module = module;
@@ -397,6 +397,9 @@ class Live {
     };
     document.addEventListener("keydown", (event) => {
       const { target, key } = event;
+      if (!root.checkVisibility()) {
+        return;
+      }
       const inside = root.contains(target);
       if (!inside && (target !== document.body || document.querySelector("main h2"))) {
         return;
@@ -468,20 +471,3 @@ class Live {
     });
   }
 }
-
-async function start() {
-  const module = await WebAssembly.compile(await unpack("live-solver").arrayBuffer());
-  for (const root of document.querySelectorAll(".live")) {
-    const file = JSON.parse(root.querySelector(".live-file").textContent);
-    root.live = new Live(root, module, file);
-    root.classList.add("ready");
-  }
-}
-
-start().catch((error) => {
-  for (const place of document.querySelectorAll(".live .problems")) {
-    place.hidden = false;
-    place.textContent = `This browser cannot run the solver: ${error.message}`;
-  }
-  throw error;
-});

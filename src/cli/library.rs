@@ -45,7 +45,7 @@ pub fn archive(
     let find = || {
         let found = runtime::narrow(runtime::find(runtime)?, &platforms)?;
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
-        Ok((libraries, page_solver::find(None)?))
+        Ok((libraries, page_solver::find(page_solver::Solver::Page)?))
     };
     let (libraries, page) = find().map_err(|error: super::error::Error| error.to_string())?;
     archive_of(source, mechanism, form, &libraries, page.as_deref())

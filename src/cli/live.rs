@@ -14,12 +14,12 @@ use crate::mechanism::{Mechanism, Source};
 
 const MAIN: &str = include_str!("../../page/scripts/live.html");
 /// The licences of what is inside the solver.
-const LICENCES: &str = include_str!("../../page/licenses.txt");
+pub(super) const LICENCES: &str = include_str!("../../page/licenses.txt");
 const SHARED: &str = include_str!("../../page/scripts/shared.js");
 /// Style of the part.
 pub(super) const STYLE: &str = include_str!("../../page/scripts/live.css");
-/// The scripts; each uses only those before it.
-const SCRIPTS: [&str; 9] = [
+/// The scripts of a mechanism; each uses only those before it.
+pub(super) const SCRIPTS: [&str; 9] = [
     include_str!("../../page/scripts/solver.js"),
     include_str!("../../page/scripts/picture.js"),
     include_str!("../../page/scripts/hand.js"),
@@ -30,6 +30,9 @@ const SCRIPTS: [&str; 9] = [
     include_str!("../../page/scripts/files.js"),
     include_str!("../../page/scripts/live.js"),
 ];
+
+/// The script that starts the mechanisms of a page.
+const START: &str = include_str!("../../page/scripts/start.js");
 
 /// Returns a page for a mechanism: one HTML file, with this element for the solver; see [`solver`].
 pub(super) fn page(source: &Source, mechanism: &Mechanism, solver: &str) -> String {
@@ -76,7 +79,8 @@ pub(super) fn shared_solver(wasm: &[u8]) -> String {
     fill(SHARED, &[("solver", &packed(wasm))])
 }
 
-fn packed(bytes: &[u8]) -> String {
+/// Returns bytes as base64 of gzip; the same bytes give the same text.
+pub(super) fn packed(bytes: &[u8]) -> String {
     let mut packer = GzBuilder::new().write(Vec::new(), Compression::best());
     let packed = (packer.write_all(bytes)).and_then(|()| packer.finish());
     STANDARD.encode(packed.expect("memory takes all bytes"))
@@ -85,20 +89,29 @@ fn packed(bytes: &[u8]) -> String {
 /// Returns the elements with the licences, packed, and with the scripts, as one module: imports and
 /// exports between them fall away.
 pub(super) fn script() -> String {
-    let mut script = format!(
-        "<script type=\"text/plain\" id=\"live-licences\">{}</script>\n<script type=\"module\">\n",
-        packed(LICENCES.as_bytes())
-    );
-    for line in SCRIPTS.iter().flat_map(|file| file.lines()) {
+    let scripts = SCRIPTS.into_iter().chain([START]);
+    format!("{}\n{}", licences(LICENCES), module(scripts))
+}
+
+/// Returns the element with licences, packed.
+pub(super) fn licences(text: &str) -> String {
+    let packed = packed(text.as_bytes());
+    format!("<script type=\"text/plain\" id=\"live-licences\">{packed}</script>")
+}
+
+/// Returns scripts as one module.
+pub(super) fn module(scripts: impl IntoIterator<Item = &'static str>) -> String {
+    let mut module = "<script type=\"module\">\n".to_owned();
+    for line in scripts.into_iter().flat_map(str::lines) {
         if !line.starts_with("import ") {
-            let _ = writeln!(script, "{}", line.strip_prefix("export ").unwrap_or(line));
+            let _ = writeln!(module, "{}", line.strip_prefix("export ").unwrap_or(line));
         }
     }
-    script + "</script>"
+    module + "</script>"
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     #[test]
@@ -111,7 +124,10 @@ mod tests {
 
     #[test]
     fn scripts_do_not_declare_a_name_twice() {
-        let script = script();
+        is_free_of_doubles(&script());
+    }
+
+    pub(in crate::cli) fn is_free_of_doubles(script: &str) {
         let names = script.lines().flat_map(|line| {
             let word = ["const ", "function ", "async function ", "class ", "let "]
                 .iter()

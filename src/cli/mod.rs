@@ -29,8 +29,10 @@ mod progress;
 mod recorder;
 pub mod render;
 mod runtime;
+mod server;
 mod signals;
 mod stdout;
+mod studio_page;
 mod suggested_estimates;
 mod times;
 mod xlsx;
@@ -71,6 +73,7 @@ enum Command {
     Report(commands::report::Report),
     Page(commands::page::Page),
     Watch(commands::watch::Watch),
+    Studio(commands::studio::Studio),
     Export(commands::export::Export),
     Convert(commands::convert::Convert),
     Platforms(commands::platforms::Platforms),
@@ -106,6 +109,7 @@ pub fn status(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Report(command) => command.run(),
         Command::Page(command) => command.run(),
         Command::Watch(command) => command.run(),
+        Command::Studio(command) => command.run(),
         Command::Export(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Platforms(command) => command.run(),

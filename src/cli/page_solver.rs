@@ -1,29 +1,46 @@
-//! The solver for pages, compiled to WebAssembly.
+//! The solvers for browsers, compiled to WebAssembly.
 
 use std::borrow::Cow;
 use std::path::Path;
 
 use super::error::Error;
 
-include!(concat!(env!("OUT_DIR"), "/embedded_solver.rs"));
+include!(concat!(env!("OUT_DIR"), "/embedded_solvers.rs"));
 
-/// Returns the solver in `file` if one is given, otherwise the one installed with this program, if
-/// there is one: `../lib/biela/page.wasm` beside it, the one that the program carries, or the one
-/// that `make page` built together with a program in `target/release`.
-pub(super) fn find(file: Option<&Path>) -> Result<Option<Cow<'static, [u8]>>, Error> {
-    if let Some(file) = file {
-        return read(file).map(Some);
+/// The pages that have a solver.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Solver {
+    /// The page of a mechanism, also inside FMUs.
+    Page,
+    /// The studio, whose solver also writes FMUs.
+    Studio,
+}
+
+impl Solver {
+    /// Returns the name of its file.
+    fn file(self) -> &'static str {
+        match self {
+            Self::Page => "page.wasm",
+            Self::Studio => "studio.wasm",
+        }
     }
+}
+
+/// Returns the solver installed with this program, if there is one: in `../lib/biela` beside it, the
+/// one that the program carries, or the one that `make page` or `make studio` built together with a
+/// program in `target/release`.
+pub(super) fn find(solver: Solver) -> Result<Option<Cow<'static, [u8]>>, Error> {
     let program = std::env::current_exe().unwrap_or_default();
     let programs = program.parent().unwrap_or(Path::new(""));
-    let installed = programs.join("../lib/biela/page.wasm");
+    let installed = programs.join("../lib/biela").join(solver.file());
     if installed.is_file() {
         return read(&installed).map(Some);
     }
-    if let Some(solver) = EMBEDDED_SOLVER {
-        return Ok(Some(Cow::Borrowed(solver)));
+    let mut embedded = EMBEDDED_SOLVERS.iter();
+    if let Some((_, content)) = embedded.find(|(name, _)| *name == solver.file()) {
+        return Ok(Some(Cow::Borrowed(content)));
     }
-    let built = programs.join("../runtimes/page.wasm");
+    let built = programs.join("../runtimes").join(solver.file());
     // Tests of debug builds must not depend on what else was built.
     if !cfg!(debug_assertions) && built.is_file() {
         return read(&built).map(Some);
@@ -32,18 +49,22 @@ pub(super) fn find(file: Option<&Path>) -> Result<Option<Cow<'static, [u8]>>, Er
 }
 
 /// Returns the solver of [`find`]; its absence is an error.
-pub(super) fn demand(file: Option<&Path>) -> Result<Cow<'static, [u8]>, Error> {
-    find(file)?.ok_or_else(|| {
-        Error::Usage(
-            "no solver for pages was found beside this program: run `make page` and `make \
-             install`, or name it with --solver; `biela run --animate` writes a page that plays a \
-             motion"
+pub(super) fn demand(solver: Solver) -> Result<Cow<'static, [u8]>, Error> {
+    find(solver)?.ok_or_else(|| {
+        Error::Usage(match solver {
+            Solver::Page => "no solver for pages was found beside this program: run `make page` and \
+                             `make install`, or name it with --solver; `biela run --animate` writes \
+                             a page that plays a motion"
                 .to_owned(),
-        )
+            Solver::Studio => "no solver for the studio was found beside this program: run `make \
+                               studio` and `make install`"
+                .to_owned(),
+        })
     })
 }
 
-fn read(path: &Path) -> Result<Cow<'static, [u8]>, Error> {
+/// Reads a solver.
+pub(super) fn read(path: &Path) -> Result<Cow<'static, [u8]>, Error> {
     let content = std::fs::read(path).map_err(Error::read(path))?;
     if !content.starts_with(b"\0asm") {
         return Err(Error::Usage(format!(

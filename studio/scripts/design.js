@@ -1,15 +1,15 @@
 // Design: the pointer and the keys draw, select and move; the solver answers with text and picture.
 
 import { add, say } from "./controls.js";
-import { ask as askFor } from "./dialogs.js";
-import { find } from "./snap.js";
+import { askParameter } from "./dialogs.js";
+import { findAt } from "./snap.js";
 import { TOOLS, ownMarker, unfit } from "./tools.js";
 
 // Way of the pointer from which a press is a drag [pixels].
 const DRAG = 4;
 // Time for which a finger rests to open the menu [ms].
 const LONG_PRESS = 550;
-const TURN = Math.PI / 180;
+const DEGREE = Math.PI / 180;
 
 export class Design {
   /** `studio` asks the solver and shows its views; `sheet` is drawn on. */
@@ -86,7 +86,7 @@ export class Design {
   look(event) {
     const chosen = TOOLS[this.tool];
     const origin = chosen.typed && this.found.length ? this.found[this.found.length - 1].at : null;
-    return find(this.sheet, this.sketch, this.sheet.placeOf(event), {
+    return findAt(this.sheet, this.sketch, this.sheet.placeOf(event), {
       kind: event.pointerType,
       origin: this.drag?.origin ?? origin,
       free: event.shiftKey || event.altKey,
@@ -193,7 +193,7 @@ export class Design {
       return;
     }
     const first = this.found[0];
-    const closes = tool.least > 2 && this.found.length >= tool.least && found.point === first.point && near(found.at, first.at);
+    const closes = tool.least > 2 && this.found.length >= tool.least && found.point === first.point && isSame(found.at, first.at);
     if (closes) {
       this.finish();
       return;
@@ -211,7 +211,7 @@ export class Design {
       }
     }
     const last = this.found[this.found.length - 1];
-    if (last && near(last.at, found.at) && tool.only === undefined) {
+    if (last && isSame(last.at, found.at) && tool.only === undefined) {
       this.studio.say("This is the point that was clicked before: click another one");
       return;
     }
@@ -322,7 +322,7 @@ export class Design {
     while (answer.refused?.parameter) {
       const { parameter, formula, value } = answer.refused;
       const known = this.answers.get(parameter);
-      const through = known && (known !== "parameter" || value !== null) ? known : await askFor(this.studio.root, { parameter, formula, value, unit: this.studio.unit });
+      const through = known && (known !== "parameter" || value !== null) ? known : await askParameter(this.studio.root, { parameter, formula, value, unit: this.studio.unit });
       if (!through) {
         break;
       }
@@ -419,7 +419,7 @@ export class Design {
         const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         const { name, factor } = this.studio.unit;
         const long = Number((Math.hypot(dx, dy) / factor).toPrecision(4));
-        const turn = Number((Math.atan2(dy, dx) / TURN).toFixed(1));
+        const turn = Number((Math.atan2(dy, dx) / DEGREE).toFixed(1));
         sheet.words(to, `${long} ${name}  ${turn}°`);
       }
     }
@@ -533,7 +533,7 @@ export class Design {
   }
 }
 
-function near(a, b) {
+function isSame(a, b) {
   return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-12;
 }
 
@@ -547,5 +547,5 @@ export function lengthOf(text, unit) {
 /** Reads an angle in degrees. */
 export function angleOf(text) {
   const match = text.trim().replace(",", ".").match(/^([-+]?[0-9.]+)\s*(°|deg)?$/i);
-  return match ? Number(match[1]) * TURN : NaN;
+  return match ? Number(match[1]) * DEGREE : NaN;
 }

@@ -2,13 +2,13 @@
 // themselves.
 
 // Distance within which the pointer finds a point, with a mouse and with a finger [pixels].
-const NEAR = { mouse: 12, pen: 14, touch: 24 };
+const NEAR_POINT = { mouse: 12, pen: 14, touch: 24 };
 // Distance within which it finds a bar, as a part of that.
 const NEAR_BAR = 0.8;
 // Distance within which a direction or the level of another point draws [pixels].
 const LEVEL = 6;
 // Angle of the directions that draw [rad].
-const TURN = Math.PI / 12;
+const DIRECTIONS = Math.PI / 12;
 
 const distance = ([x, y], [u, v]) => Math.hypot(u - x, v - y);
 
@@ -17,8 +17,8 @@ const distance = ([x, y], [u, v]) => Math.hypot(u - x, v - y);
  * (its name) or neither. `origin`, a point [m], draws to horizontal and vertical and every 15°;
  * `free` leaves grid and directions out; `without` are names of markers that are passed over.
  */
-export function find(sheet, sketch, place, { kind = "mouse", origin = null, free = false, without = [] } = {}) {
-  const near = NEAR[kind] ?? NEAR.mouse;
+export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, free = false, without = [] } = {}) {
+  const near = NEAR_POINT[kind] ?? NEAR_POINT.mouse;
   const others = sketch.points.filter((point) => !point.markers.some((marker) => without.includes(marker)));
   const nearest = (items, far) =>
     items.reduce((best, item) => (item.far <= far && (!best || item.far < best.far) ? item : best), null);
@@ -73,7 +73,7 @@ function drawn(sheet, points, place, origin) {
   if (origin && guides.length === 0) {
     const [dx, dy] = [raw[0] - origin[0], raw[1] - origin[1]];
     const long = Math.hypot(dx, dy);
-    const turn = Math.round(Math.atan2(dy, dx) / TURN) * TURN;
+    const turn = Math.round(Math.atan2(dy, dx) / DIRECTIONS) * DIRECTIONS;
     const aside = Math.abs(long * Math.sin(Math.atan2(dy, dx) - turn)) * sheet.scale;
     if (aside <= LEVEL) {
       const rounded = Math.max(step, Math.round(long / step) * step);

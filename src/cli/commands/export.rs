@@ -107,7 +107,7 @@ impl Export {
         warn_of_old(&libraries);
         let page = match self.no_page {
             true => None,
-            false => page_solver::find(None)?,
+            false => page_solver::find(page_solver::Solver::Page)?,
         };
         if page.is_none() && !self.no_page {
             packed += "; no page to move by hand, for which `make page` builds the solver";

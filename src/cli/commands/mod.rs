@@ -15,5 +15,6 @@ pub(super) mod range;
 pub(super) mod report;
 pub(super) mod run;
 pub(super) mod schema;
+pub(super) mod studio;
 pub(super) mod tolerance;
 pub(super) mod watch;

@@ -9,7 +9,7 @@ use crate::cli::input::{Input, warn_of_misfits};
 use crate::cli::input_files::InputFiles;
 use crate::cli::live;
 use crate::cli::output::{tell_written, write};
-use crate::cli::page_solver;
+use crate::cli::page_solver::{self, Solver};
 use crate::cli::stdout::is_stdout;
 
 /// Write a page on which a mechanism is moved by hand.
@@ -49,7 +49,10 @@ impl Page {
         let script = script.transpose()?;
         let files = InputFiles::new(&self.file, &input.mechanism);
         files.refuse_as_outputs(&[Some(&path), script.as_deref()])?;
-        let wasm = page_solver::demand(self.solver.as_deref())?;
+        let wasm = match &self.solver {
+            Some(file) => page_solver::read(file)?,
+            None => page_solver::demand(Solver::Page)?,
+        };
         warn_of_misfits(&input.assemble()?);
         let solver = match &self.share {
             None => live::solver(&wasm),

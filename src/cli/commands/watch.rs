@@ -1,10 +1,7 @@
 //! `biela watch`
 
-mod server;
-
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::hash::{BuildHasher as _, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -21,10 +18,10 @@ use crate::cli::message::{Message, tell};
 use crate::cli::output::print;
 use crate::cli::page_solver;
 use crate::cli::render::render;
+use crate::cli::server::{Answer, PAGE, Request, Server, TEXT, token};
 use crate::drawing::animation::{fill, page_with, player};
 use crate::drawing::svg::escape;
 use crate::mechanism::Mechanism;
-use server::{Answer, PAGE, Request, Server, TEXT};
 
 const MAIN: &str = include_str!("watch/main.html");
 const STYLE: &str = include_str!("watch/watch.css");
@@ -62,7 +59,7 @@ impl Watch {
         }
         // Options move the mechanism from where the file has it, which a hand would not respect.
         let solver = match self.conditions.is_empty() {
-            true => page_solver::find(None)?,
+            true => page_solver::find(page_solver::Solver::Page)?,
             false => None,
         };
         let server = Server::new(self.port)?;
@@ -245,12 +242,6 @@ fn read(path: &Path) -> Result<Result<(Input, Vec<String>), String>, Error> {
         Err(Error::Diagnosed) => Ok(Err(shown.concat())),
         Err(error) => Err(error),
     }
-}
-
-/// Returns a text that no other site can guess.
-fn token() -> String {
-    let part = || RandomState::new().hash_one(std::process::id());
-    format!("{:016x}{:016x}", part(), part())
 }
 
 /// Returns the message of an error.

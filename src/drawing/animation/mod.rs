@@ -17,7 +17,7 @@ pub use moving::MovingPicture;
 #[cfg(feature = "gif")]
 pub use moving_gif::moving_gif;
 pub use moving_svg::moving_svg;
-pub use page::{fill, page, page_with, player};
+pub use page::{STYLE, fill, page, page_with, parts_script, player};
 
 use super::force_place::ForcePlace;
 use super::scene::Scene;

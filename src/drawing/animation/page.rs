@@ -9,7 +9,8 @@ use crate::drawing::svg::escape;
 
 const PAGE: &str = include_str!("page.html");
 const PLAYER: &str = include_str!("player.html");
-const STYLE: &str = include_str!("player.css");
+/// Style of pages with moving pictures.
+pub const STYLE: &str = include_str!("player.css");
 const SCRIPT: &str = concat!(include_str!("parts.js"), include_str!("player.js"));
 
 /// Returns a page that plays an animation: one HTML file that needs no other.
@@ -38,6 +39,12 @@ pub fn page_with(title: &str, description: &str, main: &str, style: &str) -> Str
             ("script", SCRIPT),
         ],
     )
+}
+
+/// Returns the script with `Parts` and `arrow`, which draw moving pictures.
+#[must_use]
+pub fn parts_script() -> &'static str {
+    include_str!("parts.js")
 }
 
 /// Returns the part of a page that plays an animation, without the style and the script that

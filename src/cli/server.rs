@@ -1,10 +1,11 @@
 //! A server for one browser on this machine.
 
+use std::hash::{BuildHasher as _, RandomState};
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::Duration;
 
-use crate::cli::error::Error;
+use super::error::Error;
 
 /// Largest size of the head of a request, and of its body: that of a mechanism file.
 const MOST_BYTES: [u64; 2] = [16 * 1024, 16 << 20];
@@ -14,6 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Types of answers.
 pub(super) const PAGE: &str = "text/html";
 pub(super) const TEXT: &str = "text/plain";
+pub(super) const SCRIPT: &str = "text/javascript";
 
 /// A server that listens on the loopback address only.
 pub(super) struct Server {
@@ -27,6 +29,8 @@ pub(super) struct Request {
     pub(super) path: String,
     /// The token that the page was served with.
     pub(super) token: Option<String>,
+    /// The version of the file that the page has.
+    pub(super) version: Option<String>,
     pub(super) body: String,
 }
 
@@ -52,6 +56,14 @@ impl Answer {
         Self {
             status,
             ..Self::new(TEXT, status)
+        }
+    }
+
+    /// Makes the answer that a file has changed since, so that it was not written.
+    pub(super) fn conflict(why: &str) -> Self {
+        Self {
+            body: why.to_owned(),
+            ..Self::refusal("409 Conflict")
         }
     }
 
@@ -110,6 +122,7 @@ impl Server {
             method: word(),
             path: word(),
             token: None,
+            version: None,
             body: String::new(),
         };
         let mut host = None;
@@ -124,6 +137,7 @@ impl Server {
             match &*name.to_ascii_lowercase() {
                 "host" => host = Some(value.to_owned()),
                 "x-biela-token" => request.token = Some(value.to_owned()),
+                "x-biela-version" => request.version = Some(value.to_owned()),
                 "content-length" => length = value.parse().unwrap_or(0).min(MOST_BYTES[1]),
                 _ => {}
             }
@@ -152,4 +166,10 @@ impl Server {
             body.len()
         )
     }
+}
+
+/// Returns a text that no other site can guess.
+pub(super) fn token() -> String {
+    let part = || RandomState::new().hash_one(std::process::id());
+    format!("{:016x}{:016x}", part(), part())
 }

@@ -1,0 +1,191 @@
+//! `biela studio`
+
+use std::borrow::Cow;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::new::templates;
+use crate::cli::error::Error;
+use crate::cli::output::{print, write};
+use crate::cli::page_solver::{self, Solver};
+use crate::cli::runtime;
+use crate::cli::server::{Answer, PAGE, Request, SCRIPT, Server, TEXT, token};
+use crate::cli::studio_page::{Beginning, page, part};
+use crate::mechanism::Mechanism;
+use crate::mechanism::Source;
+
+/// Draw a mechanism in a browser, move it, and take the FMU home.
+///
+/// The page draws links, joints, drivers and forces with the mouse or a finger and writes the
+/// mechanism file along: text and drawing are one. It exports FMUs, pictures and the file. Only this
+/// machine can open it; with FILE, that file is written at each change. Ctrl-C ends the command.
+///
+/// With --write the studio becomes a folder for any web server, or for the disk.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: biela studio four_bar.toml")]
+pub(in crate::cli) struct Studio {
+    /// The mechanism file, which is made if it does not exist.
+    file: Option<PathBuf>,
+    /// Write the studio into this folder, with the runtime libraries of all platforms; its page is
+    /// index.html.
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["file", "port"])]
+    write: Option<PathBuf>,
+    /// Folder of runtime libraries, one subfolder per platform [default: those installed with this
+    /// program].
+    #[arg(long, value_name = "FOLDER")]
+    runtime: Option<PathBuf>,
+    /// The port to listen on [default: a free one].
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    port: u16,
+}
+
+/// What a studio consists of besides its page.
+struct Parts {
+    solver: Cow<'static, [u8]>,
+    /// Names and contents of what goes into FMUs.
+    packed: Vec<(String, Cow<'static, [u8]>)>,
+}
+
+impl Parts {
+    fn find(folder: Option<&Path>) -> Result<Self, Error> {
+        let solver = page_solver::demand(Solver::Studio)?;
+        let libraries = runtime::find(folder)?.into_iter().map(|found| {
+            let library = found.library;
+            (library.platform.name.to_owned(), library.content)
+        });
+        let page = page_solver::find(Solver::Page)?;
+        let page = page.map(|solver| ("page".to_owned(), solver));
+        Ok(Self {
+            solver,
+            packed: libraries.chain(page).collect(),
+        })
+    }
+
+    fn page(&self, file: Option<Value>, disk: Option<[String; 2]>) -> String {
+        let parts = self.packed.iter().map(|(name, _)| name.clone());
+        let beginning = Beginning {
+            file,
+            disk,
+            parts: parts.collect(),
+            templates: shown_templates(),
+        };
+        page(&self.solver, &beginning)
+    }
+
+    fn script(&self, path: &str) -> Option<String> {
+        let name = path.strip_prefix("/parts/")?.strip_suffix(".js")?;
+        let mut parts = self.packed.iter();
+        let (name, content) = parts.find(|(known, _)| known == name)?;
+        Some(part(name, content))
+    }
+}
+
+impl Studio {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
+        let parts = Parts::find(self.runtime.as_deref())?;
+        if let Some(folder) = &self.write {
+            return write_folder(&parts, folder);
+        }
+        if let Some(file) = &self.file
+            && file.extension().is_none_or(|extension| extension != "toml")
+        {
+            return Err(Error::Usage(format!(
+                "`{}` is no name of a mechanism file: it must end in .toml",
+                file.display()
+            )));
+        }
+        let server = Server::new(self.port)?;
+        let _ = print(&format!("{}\n", server.address()));
+        let token = token();
+        server.serve(|request| match (&*request.method, &*request.path) {
+            ("GET", "/") => {
+                let file = self.file.as_deref().map(read);
+                let version = file.as_ref().map(|(_, version)| version.clone());
+                let disk = version.map(|version| [token.clone(), version]);
+                Answer::new(PAGE, parts.page(file.map(|(file, _)| file), disk))
+            }
+            ("GET", path) => match parts.script(path) {
+                Some(script) => Answer::new(SCRIPT, script),
+                None => Answer::refusal("404 Not Found"),
+            },
+            ("PUT", "/file") => match &self.file {
+                Some(file) if request.token.as_deref() == Some(&*token) => put(file, request),
+                _ => Answer::refusal("403 Forbidden"),
+            },
+            _ => Answer::refusal("404 Not Found"),
+        })
+    }
+}
+
+/// Returns the file as the page opens it, and its version; one that does not exist is a new
+/// mechanism of its name.
+fn read(path: &Path) -> (Value, String) {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let stem = stem.filter(|stem| crate::mechanism::is_identifier(stem));
+    let text = std::fs::read_to_string(path).unwrap_or_else(|_| {
+        let name = stem.unwrap_or_else(|| "mechanism".to_owned());
+        format!("format = 1\nname = \"{name}\"\n")
+    });
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let source = Source::new("", &*text).in_folder(path.parent().unwrap_or(Path::new("")));
+    let files = Mechanism::parse(&source).map(|(mechanism, _)| {
+        let files = mechanism.table_files.into_iter();
+        files.map(|file| json!([file.name, file.text])).collect::<Vec<_>>()
+    });
+    let file = json!({ "name": name, "text": text, "files": files.unwrap_or_default() });
+    (file, version(path))
+}
+
+/// Returns a word that changes with the content of a file.
+fn version(path: &Path) -> String {
+    let mut hasher = DefaultHasher::new();
+    std::fs::read(path).unwrap_or_default().hash(&mut hasher);
+    format!("{:016x}", hasher.finish())
+}
+
+/// Writes the file, unless another program has changed it since the page read or wrote it.
+fn put(path: &Path, request: &Request) -> Answer {
+    if request.version.as_deref() != Some(&*version(path)) {
+        return Answer::conflict(
+            "another program has changed it; load this page again, or save under another name",
+        );
+    }
+    match std::fs::write(path, &request.body) {
+        Ok(()) => Answer::new(TEXT, version(path)),
+        Err(error) => Answer::failure(error.to_string()),
+    }
+}
+
+fn write_folder(parts: &Parts, folder: &Path) -> Result<(), Error> {
+    let scripts = folder.join("parts");
+    std::fs::create_dir_all(&scripts).map_err(Error::write(&scripts))?;
+    for (name, content) in &parts.packed {
+        let path = scripts.join(format!("{name}.js"));
+        write(&path, part(name, content).as_bytes())?;
+    }
+    let page = folder.join("index.html");
+    write(&page, parts.page(None, None).as_bytes())?;
+    crate::cli::output::tell_written(&page);
+    Ok(())
+}
+
+/// Returns the shipped mechanisms as the page offers them.
+fn shown_templates() -> Vec<Value> {
+    let shown = templates().map(|(name, text, files)| {
+        let source = Source::new("", text).with_files(
+            files.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect(),
+        );
+        let mechanism = Mechanism::parse(&source).ok();
+        let description = mechanism.map(|(mechanism, _)| mechanism.description);
+        json!({ "name": name, "description": description, "text": text, "files": files })
+    });
+    shown.collect()
+}

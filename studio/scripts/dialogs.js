@@ -1,0 +1,123 @@
+// Small windows that ask and tell.
+
+import { add, say, shown } from "./controls.js";
+
+/** Opens a window with a title; `fill` fills its form. Returns the value of the button, "" for none. */
+export function openWindow(root, title, fill) {
+  return new Promise((done) => {
+    const dialog = add(root, "dialog", { className: "window" });
+    const form = add(dialog, "form", { method: "dialog" });
+    add(form, "h2", { textContent: title });
+    fill(form, dialog);
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      done(dialog.returnValue);
+    });
+    dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
+    dialog.showModal();
+  });
+}
+
+/** Adds a row of buttons: pairs of text and value; the first one is the usual one. */
+export function buttonRow(form, ...pairs) {
+  const row = add(form, "p", { className: "buttons" });
+  pairs.forEach(([textContent, value], index) =>
+    add(row, "button", { type: "submit", value, textContent, className: index === 0 ? "primary" : "" }),
+  );
+  return row;
+}
+
+/** Asks whether a parameter is to change, or the number in its place; undefined for neither. */
+export async function askParameter(root, { parameter, formula, value, unit }) {
+  const answer = await openWindow(root, "Change the parameter?", (form) => {
+    const text = add(form, "p");
+    const fits = value !== null;
+    const to = fits ? ` to ${shown(value / unit.factor, 5)} ${unit.name}` : "";
+    say(
+      text,
+      formula === parameter
+        ? `This length is the parameter \`${parameter}\`, which others may use, too.`
+        : `The file has \`${formula}\` here.`,
+    );
+    const choices = [
+      [`Change ${parameter}${to}`, "parameter"],
+      ["Put a number in its place", "number"],
+      ["Leave it", ""],
+    ];
+    buttonRow(form, ...(fits ? choices : choices.slice(1)));
+  });
+  return answer || undefined;
+}
+
+/** Asks for a name; "" for none. */
+export async function askName(root, title, name) {
+  let field;
+  const answer = await openWindow(root, title, (form) => {
+    const label = add(form, "label", { textContent: "Name " });
+    field = add(label, "input", { type: "text", value: name, pattern: "[A-Za-z][A-Za-z0-9_]*", required: true, autocomplete: "off", spellcheck: false });
+    add(form, "p", { className: "note", textContent: "A letter, then letters, digits and _." });
+    buttonRow(form, ["Set", "set"]);
+    const cancel = add(form.lastChild, "button", { type: "button", textContent: "Cancel" });
+    cancel.addEventListener("click", () => form.parentElement.close());
+    setTimeout(() => field.select());
+  });
+  return answer === "set" ? field.value : "";
+}
+
+/**
+ * Opens a list of actions at a place of the screen: pairs of text and act, or of text and reason where
+ * it cannot be done. Returns the value chosen, or undefined.
+ */
+export class Menu {
+  constructor(root) {
+    this.place = add(root, "div", { className: "menu", hidden: true });
+    this.place.setAttribute("role", "menu");
+    document.addEventListener("pointerdown", (event) => !this.place.contains(event.target) && this.close(), true);
+    this.place.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** `items` have a `label`, and `act` or the reason `why` it cannot be done; a string is a heading. */
+  open(items, [x, y]) {
+    this.back = document.activeElement;
+    this.place.replaceChildren();
+    for (const item of items) {
+      if (typeof item === "string") {
+        add(this.place, "p", { textContent: item });
+        continue;
+      }
+      const button = add(this.place, "button", { type: "button", disabled: !item.act });
+      button.setAttribute("role", "menuitem");
+      say(button, item.label);
+      if (item.why) {
+        say(add(button, "small"), item.why);
+      }
+      button.addEventListener("click", () => {
+        this.close();
+        item.act();
+      });
+    }
+    this.place.hidden = false;
+    const { offsetWidth, offsetHeight } = this.place;
+    this.place.style.left = `${Math.max(4, Math.min(innerWidth - offsetWidth - 4, x))}px`;
+    this.place.style.top = `${Math.max(4, Math.min(innerHeight - offsetHeight - 4, y))}px`;
+    this.place.querySelector("button:not(:disabled)")?.focus();
+  }
+
+  key(event) {
+    const buttons = [...this.place.querySelectorAll("button:not(:disabled)")];
+    const at = buttons.indexOf(document.activeElement);
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step) {
+      event.preventDefault();
+      buttons[(at + step + buttons.length) % buttons.length]?.focus();
+    } else if (event.key === "Escape") {
+      event.stopPropagation();
+      this.close();
+      this.back?.focus?.();
+    }
+  }
+
+  close() {
+    this.place.hidden = true;
+  }
+}

@@ -1,0 +1,83 @@
+// The numbers of what is selected, and what can be done with it.
+
+import { add, say } from "./controls.js";
+import { TOOLS, icon } from "./tools.js";
+
+export class Inspector {
+  constructor(studio, place) {
+    this.studio = studio;
+    this.place = place;
+  }
+
+  show() {
+    const answer = this.studio.ask({ do: "inspect", names: this.studio.selected() });
+    const told = JSON.stringify(answer);
+    // What is being typed in stays as it is.
+    if (told === this.told && this.place.contains(document.activeElement)) {
+      return;
+    }
+    this.told = told;
+    this.place.replaceChildren();
+    if (!answer?.title) {
+      return;
+    }
+    const title = add(this.place, "h2");
+    say(title, answer.title);
+    const rows = add(this.place, "div", { className: "rows" });
+    for (const row of answer.rows) {
+      this.row(rows, row);
+    }
+    const actions = add(this.place, "p", { className: "actions" });
+    for (const { label, gesture, why } of answer.actions) {
+      const button = add(actions, "button", { type: "button", disabled: Boolean(why), title: why ?? "" });
+      if (TOOLS[gesture?.kind]) {
+        button.append(icon(gesture.kind));
+      }
+      button.append(label);
+      button.addEventListener("click", () => this.studio.act(gesture));
+    }
+  }
+
+  row(place, { label, path, element, value, shown, unit, type, choices, help }) {
+    const row = add(place, "label", { className: "field", title: help ?? "" });
+    say(add(row, "span"), label);
+    if (type === "read") {
+      add(row, "output", { textContent: [shown ?? value, shown ? "" : unit].filter(Boolean).join(" ") });
+      return;
+    }
+    const put = (next) => {
+      if (next !== value) {
+        this.studio.gesture({ kind: "put", path, element, value: next });
+      }
+    };
+    if (type === "choice" || type === "flag") {
+      const list = add(row, "select");
+      for (const choice of type === "flag" ? ["true", "false"] : choices) {
+        list.add(new Option(choice.replaceAll('"', ""), choice));
+      }
+      list.value = value ?? "";
+      list.addEventListener("change", () => put(list.value));
+      return;
+    }
+    const field = add(row, "input", { type: "text", value: plain(value ?? ""), autocomplete: "off", spellcheck: false });
+    field.placeholder = unit ?? "";
+    add(row, "small", { textContent: shown && shown !== value ? shown : "" });
+    const take = () => {
+      const text = field.value.trim();
+      const isText = type === "text" && text !== "";
+      put(isText ? JSON.stringify(text) : text === plain(value ?? "") ? value : text);
+    };
+    field.addEventListener("change", take);
+    field.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") {
+        event.preventDefault();
+        take();
+      }
+    });
+  }
+}
+
+/** Returns a TOML value without the quotes of a string. */
+function plain(value) {
+  return /^"[^"\\]*"$/.test(value) ? value.slice(1, -1) : value;
+}

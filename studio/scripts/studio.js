@@ -1,0 +1,680 @@
+// The studio: text and drawing of one mechanism, side by side, and the way out.
+
+import { add, say } from "./controls.js";
+import { Design } from "./design.js";
+import { Menu, askName, buttonRow, openWindow } from "./dialogs.js";
+import { exportFmu, fileOfLink, saveFile, shareLink } from "./export.js";
+import { Inspector } from "./inspector.js";
+import { Live } from "./live.js";
+import { Sheet } from "./sheet.js";
+import { Broken, Solver, unpack } from "./solver.js";
+import { TOOLS, icon } from "./tools.js";
+
+const EMPTY = 'format = 1\nname = "mechanism"\n';
+const KEPT = "biela.studio";
+// Pause after which typing goes on as another change [ms].
+const PAUSE = 900;
+const UNITS = { mm: 1e-3, cm: 1e-2, m: 1, inch: 0.0254 };
+
+class Studio {
+  constructor(root, module, parts, templates) {
+    this.root = root;
+    this.module = module;
+    this.parts = parts;
+    this.templates = templates;
+    this.find = (selector) => root.querySelector(selector);
+    this.solver = new Solver(module);
+    this.view = {};
+    this.selection = null;
+    this.mode = "design";
+    this.unit = { name: "mm", factor: UNITS.mm };
+    this.menu = new Menu(root);
+    this.sheet = new Sheet(this.find(".sheet"), () => this.redraw());
+    this.design = new Design(this, this.sheet);
+    this.inspector = new Inspector(this, this.find(".inspector"));
+    this.makeTools();
+    this.editor = makeEditor(this.find(".editor"), {
+      onChange: (text) => this.typed(text),
+      onCursor: () => {},
+      complete: (text, offset) => completions(text, offset, this.schema, this.names),
+      undo: () => this.undo(),
+      redo: () => this.redo(),
+      label: "The mechanism's file",
+    });
+    this.connect();
+    this.design.take("select");
+  }
+
+  get isDesign() {
+    return this.mode === "design";
+  }
+
+  get text() {
+    return this.view.text ?? "";
+  }
+
+  /** The mechanism's name, for files. */
+  get name() {
+    return this.text.match(/^name\s*=\s*"([A-Za-z0-9_]+)"/m)?.[1] ?? "mechanism";
+  }
+
+  /** Names in the file, for completion. */
+  get names() {
+    const { sketch } = this.view;
+    return {
+      markers: sketch?.points.flatMap((point) => point.markers) ?? [],
+      bodies: sketch?.bodies.map((body) => body.name) ?? [],
+      joints: sketch?.joints.map((joint) => joint.name) ?? [],
+      drivers: sketch?.drivers.map((driver) => driver.name) ?? [],
+      parameters: sketch?.parameters.map((parameter) => parameter.name) ?? [],
+    };
+  }
+
+  // -- the solver ----------------------------------------------------------------------------
+
+  /** Asks the solver; a failure of it makes a new one, with the text as it was. */
+  ask(request) {
+    try {
+      return this.solver.ask(request);
+    } catch (error) {
+      if (!(error instanceof Broken)) {
+        throw error;
+      }
+      this.solver = new Solver(this.module);
+      const { text } = this;
+      this.solver.ask({ do: "begin", ...this.file, text });
+      this.say(`The solver has failed, which is a defect of biela: ${error.message}. It goes on with the text as it is.`);
+      return { refused: {} };
+    }
+  }
+
+  /** Opens a file: a new document. */
+  open(file, fit = true) {
+    this.file = { name: file.name, files: file.files ?? [] };
+    this.selection = null;
+    this.design.answers.clear();
+    const answer = this.ask({ do: "begin", ...this.file, text: file.text, scale: this.sheet.scale });
+    this.show(answer, { anew: true });
+    if (fit) {
+      this.fit();
+    }
+    this.setMode("design");
+  }
+
+  /** Does a gesture; shows its outcome, and says why not. */
+  gesture(gesture, tells = true) {
+    const { scale, decimals } = this.sheet;
+    const answer = this.ask({ do: "gesture", keep: true, scale, gesture: { decimals, ...gesture } });
+    if (answer.refused) {
+      if (tells && answer.refused.message) {
+        this.say(answer.refused.message);
+      }
+      if (tells && answer.refused.parameter) {
+        this.say(`The number is \`${answer.refused.formula}\` in the text: change it there`);
+      }
+      return answer;
+    }
+    this.say("");
+    this.show(answer);
+    return answer;
+  }
+
+  /** Shows what a gesture would draw. */
+  preview(gesture) {
+    const { scale, decimals } = this.sheet;
+    const answer = this.ask({ do: "gesture", keep: false, scale, gesture: { decimals, ...gesture } });
+    if (!answer.refused) {
+      this.sheet.show(answer.picture, scale);
+      this.tellStatus(answer.status);
+    }
+    return answer;
+  }
+
+  /** Draws the document as it is. */
+  showAgain() {
+    this.sheet.show(this.view.picture, this.drawnScale);
+    this.tellStatus(this.view.status);
+  }
+
+  /** Draws at the scale of the sheet. */
+  redraw() {
+    if (this.redrawing || !this.view.text) {
+      return;
+    }
+    this.redrawing = true;
+    requestAnimationFrame(() => {
+      this.redrawing = false;
+      this.show(this.ask({ do: "view", scale: this.sheet.scale }));
+    });
+  }
+
+  /** Shows a view; only the part of the text that has changed goes to the editor. */
+  show(view, { anew = false, typed = false } = {}) {
+    if (view.text === undefined) {
+      return;
+    }
+    const before = this.editor.text;
+    this.view = { ...this.view, ...view };
+    if (anew) {
+      this.editor.set(view.text);
+    } else if (!typed && before !== view.text) {
+      const [from, to, insert] = changeOf(before, view.text);
+      this.editor.replace(from, to, insert);
+    }
+    this.editor.problems(view.problems);
+    this.drawnScale = this.sheet.scale;
+    if (view.sketch) {
+      this.sheet.show(view.picture, this.drawnScale);
+    }
+    this.root.classList.toggle("stale", view.is_stale);
+    this.root.classList.toggle("blank", view.status?.state === "empty");
+    this.find(".undo").disabled = !view.can_undo;
+    this.find(".redo").disabled = !view.can_redo;
+    this.find(".file-name").textContent = this.name;
+    document.title = `${this.name} – biela studio`;
+    this.chooseUnit();
+    this.tellStatus(view.status);
+    this.keepSelection();
+    this.inspector.show();
+    this.design.mark();
+    this.keep();
+  }
+
+  /** Shows lengths as the file does. */
+  chooseUnit() {
+    const display = this.text.match(/display\s*=\s*"(mm|cm|m|inch)"/)?.[1];
+    const name = display ?? ((this.view.sketch?.size ?? 0) > 3 ? "m" : "mm");
+    this.unit = { name, factor: UNITS[name] };
+  }
+
+  fit() {
+    const { sketch } = this.view;
+    this.sheet.fit(sketch?.points.map((point) => point.at) ?? []);
+  }
+
+  // -- text and undo -------------------------------------------------------------------------
+
+  typed(text) {
+    const now = performance.now();
+    const joined = now - (this.typedAt ?? -Infinity) < PAUSE;
+    this.typedAt = now;
+    this.show(this.ask({ do: "type", text, joined, scale: this.sheet.scale }), { typed: true });
+    this.stopMotion();
+  }
+
+  undo() {
+    this.step("text_undo");
+  }
+
+  redo() {
+    this.step("text_redo");
+  }
+
+  step(word) {
+    this.typedAt = -Infinity;
+    this.design.drop();
+    this.setMode("design");
+    this.show(this.ask({ do: word, scale: this.sheet.scale }));
+  }
+
+  /** Keeps the text in this browser, and in the file that `biela studio` serves. */
+  keep() {
+    clearTimeout(this.keeping);
+    this.keeping = setTimeout(() => {
+      const { file, text } = this;
+      try {
+        localStorage.setItem(KEPT, JSON.stringify({ ...file, text }));
+      } catch {
+        // A full or forbidden store: the file can still be saved.
+      }
+      this.disk?.write(text);
+    }, 400);
+  }
+
+  // -- what is selected ----------------------------------------------------------------------
+
+  select(thing) {
+    this.selection = thing;
+    this.inspector.show();
+    this.design.mark();
+    this.markText();
+  }
+
+  /** Forgets what is no longer there. */
+  keepSelection() {
+    const { selection } = this;
+    const { sketch } = this.view;
+    const gone =
+      selection &&
+      ((selection.kind === "body" && !sketch?.bodies.some((body) => body.name === selection.name)) ||
+        (selection.kind === "point" &&
+          !sketch?.points.some((point) => point.markers.some((marker) => selection.markers.includes(marker)))));
+    if (gone) {
+      this.selection = null;
+    }
+    this.markText();
+  }
+
+  /** Marks in the text where the selection stands. */
+  markText() {
+    const words = this.selected().map((name) => name.replace(/^ground\./, ""));
+    const ranges = [];
+    for (const word of words) {
+      const pattern = new RegExp(`(?<![A-Za-z0-9_.])${word.replace(".", "\\.")}(?![A-Za-z0-9_])`, "g");
+      for (const match of this.text.matchAll(pattern)) {
+        ranges.push({ from: match.index, to: match.index + word.length });
+      }
+    }
+    this.editor.mark(ranges.sort((a, b) => a.from - b.from));
+  }
+
+  /** The names of what is selected. */
+  selected() {
+    const { selection } = this;
+    return selection ? (selection.name ? [selection.name] : [...selection.markers]) : [];
+  }
+
+  removeSelected() {
+    const { selection } = this;
+    if (!selection) {
+      return;
+    }
+    const joints = selection.kind === "point" ? selection.joints : [];
+    const names = joints.length ? joints : this.selected();
+    this.gesture({ kind: "delete", names });
+  }
+
+  // -- menus ---------------------------------------------------------------------------------
+
+  closeMenu() {
+    this.menu.close();
+  }
+
+  /** Opens the menu of what was found. */
+  openMenu(found, event) {
+    const names = found.point ? found.point.markers : found.body ? [found.body] : [];
+    const answer = this.ask({ do: "inspect", names });
+    const items = (answer.actions ?? []).map(({ label, gesture, why }) => ({
+      label,
+      why,
+      act: why ? null : () => this.act(gesture),
+    }));
+    if (!found.point && !found.body) {
+      items.push({ label: "Show all", act: () => this.fit() });
+    }
+    if (items.length) {
+      this.menu.open(items, [event.clientX, event.clientY]);
+    }
+  }
+
+  /** Does an action of the inspector; one without a name asks for it. */
+  async act(gesture) {
+    if ("name" in gesture && gesture.name === null) {
+      const name = await askName(this.root, "Name of the parameter", "length");
+      return name ? this.gesture({ ...gesture, name }) : undefined;
+    }
+    if (gesture.kind === "rename" && !gesture.new) {
+      const old = gesture.old.split(".").pop();
+      const name = await askName(this.root, `Rename ${old}`, old);
+      return name && name !== old ? this.gesture({ ...gesture, new: name }) : undefined;
+    }
+    return this.gesture(gesture);
+  }
+
+  /** Asks for one of several items: pairs of text and value. */
+  choose(items, event) {
+    return new Promise((done) => {
+      const place = [event.clientX ?? innerWidth / 2, event.clientY ?? innerHeight / 2];
+      this.menu.open(
+        items.map(([label, value]) => ({ label, act: () => done(value) })),
+        place,
+      );
+    });
+  }
+
+  // -- words ---------------------------------------------------------------------------------
+
+  tellStatus(status) {
+    if (status) {
+      this.root.dataset.state = status.state;
+      const line = this.find(".status .state");
+      if (line.dataset.told !== status.text) {
+        line.dataset.told = status.text;
+        say(line, sentence(status.text));
+      }
+    }
+  }
+
+  hint(text) {
+    say(this.find(".status .hint"), text);
+  }
+
+  say(text) {
+    const line = this.find(".said");
+    say(line, sentence(text));
+    line.hidden = text === "";
+  }
+
+  // -- modes ---------------------------------------------------------------------------------
+
+  setMode(mode) {
+    if (mode === this.mode) {
+      return;
+    }
+    if (mode === "motion" && !this.startMotion()) {
+      return;
+    }
+    this.mode = mode;
+    this.root.classList.toggle("design", this.isDesign);
+    this.root.classList.toggle("motion", !this.isDesign);
+    for (const button of this.root.querySelectorAll(".modes button")) {
+      button.setAttribute("aria-pressed", String(button.value === mode));
+    }
+    if (this.isDesign) {
+      this.live.play.stop();
+      this.sheet.look();
+      this.design.hint();
+    } else {
+      this.design.drop();
+      this.live.fit();
+    }
+  }
+
+  startMotion() {
+    const { state, text } = this.view.status ?? {};
+    if (["empty", "broken", "open"].includes(state)) {
+      this.say(state === "empty" ? "There is nothing yet that could move: draw a link first" : text);
+      return false;
+    }
+    const file = { ...this.file, text: this.text };
+    const root = this.find(".live");
+    if (this.live) {
+      this.live.open(file);
+    } else {
+      this.live = new Live(root, this.module, file);
+      root.classList.add("ready");
+    }
+    return true;
+  }
+
+  /** A text that was typed while it moved: the motion begins anew from it. */
+  stopMotion() {
+    if (!this.isDesign && !this.view.is_stale) {
+      this.live.open({ ...this.file, text: this.text });
+    }
+  }
+
+  /** Takes the pose of the motion as the start of the file. */
+  startHere() {
+    const text = this.live?.ask({ do: "text" })?.text;
+    if (text) {
+      this.show(this.ask({ do: "type", text, scale: this.sheet.scale }));
+      this.say("The file starts at this pose now");
+    }
+  }
+
+  // -- controls ------------------------------------------------------------------------------
+
+  makeTools() {
+    const place = this.find(".tools");
+    for (const [name, tool] of Object.entries(TOOLS)) {
+      if (tool.group) {
+        add(place, "span", { className: "group", textContent: tool.group });
+      }
+      const button = add(place, "button", { type: "button", value: name, title: `${tool.hints[0]} (${tool.key.toUpperCase()})` });
+      button.append(icon(name));
+      add(button, "span", { textContent: tool.label });
+      button.addEventListener("click", () => {
+        this.setMode("design");
+        this.design.take(name);
+        this.sheet.place.focus({ preventScroll: true });
+      });
+    }
+  }
+
+  showTool(name) {
+    for (const button of this.root.querySelectorAll(".tools button")) {
+      button.setAttribute("aria-pressed", String(button.value === name));
+    }
+    this.sheet.place.dataset.tool = name;
+  }
+
+  connect() {
+    const { find, root } = this;
+    const click = (selector, act) => find(selector).addEventListener("click", act);
+    click(".undo", () => this.undo());
+    click(".redo", () => this.redo());
+    click(".zoom-in", () => this.sheet.zoom(1.25));
+    click(".zoom-out", () => this.sheet.zoom(0.8));
+    click(".fit", () => this.fit());
+    click(".export", () => exportFmu(this));
+    click(".start-here", () => this.startHere());
+    click(".file-menu", (event) => this.fileMenu(event));
+    click(".help", () => this.help());
+    for (const button of root.querySelectorAll(".modes button")) {
+      button.addEventListener("click", () => this.setMode(button.value));
+    }
+    for (const button of root.querySelectorAll(".sides-choice button")) {
+      button.addEventListener("click", () => {
+        root.dataset.side = root.dataset.side === button.value ? "" : button.value;
+        for (const each of root.querySelectorAll(".sides-choice button")) {
+          each.setAttribute("aria-pressed", String(each.value === root.dataset.side));
+        }
+      });
+    }
+    for (const kind of ["dragover", "drop"]) {
+      root.addEventListener(kind, (event) => {
+        event.preventDefault();
+        if (kind === "drop" && event.dataTransfer.files.length) {
+          this.openFiles([...event.dataTransfer.files]);
+        }
+      });
+    }
+    document.addEventListener("keydown", (event) => this.key(event));
+    document.addEventListener("keyup", () => this.design.keyUp());
+    find(".opened").addEventListener("change", (event) => {
+      this.openFiles([...event.target.files]);
+      event.target.value = "";
+    });
+  }
+
+  key(event) {
+    const { target, key } = event;
+    const inField = target.closest?.("input, textarea, select, .editor, dialog, .menu");
+    const command = event.ctrlKey || event.metaKey;
+    if (command && !inField) {
+      const act = {
+        z: () => (event.shiftKey ? this.redo() : this.undo()),
+        y: () => this.redo(),
+        s: () => saveFile(this),
+        e: () => exportFmu(this),
+        d: () => this.selected().length && this.gesture({ kind: "duplicate", bodies: this.selected(), by: [4 * this.sheet.step, -4 * this.sheet.step] }),
+      }[key.toLowerCase()];
+      if (act) {
+        event.preventDefault();
+        act();
+      }
+      return;
+    }
+    if (inField) {
+      if (key === "Escape" && target.closest(".typed")) {
+        this.design.drop();
+        this.sheet.place.focus();
+      }
+      return;
+    }
+    if (key === "Tab") {
+      return;
+    }
+    if (key === "F1" || key === "?") {
+      event.preventDefault();
+      this.help();
+    } else if (key === "m" && event.altKey) {
+      event.preventDefault();
+      this.setMode(this.isDesign ? "motion" : "design");
+    } else if (this.isDesign && target.closest?.("button, summary, a") && (key === " " || key === "Enter")) {
+      return;
+    } else if (this.isDesign) {
+      const simple = {
+        "+": () => this.sheet.zoom(1.25),
+        "-": () => this.sheet.zoom(0.8),
+        0: () => this.fit(),
+        Home: () => this.fit(),
+      }[key];
+      if (simple && !this.design.found.length) {
+        simple();
+      } else if (this.design.key(event)) {
+        event.preventDefault();
+      }
+    }
+  }
+
+  fileMenu(event) {
+    const box = event.currentTarget.getBoundingClientRect();
+    this.menu.open(
+      [
+        { label: "New", act: () => this.open({ name: "mechanism.toml", text: EMPTY }) },
+        { label: "Open a file …", act: () => this.find(".opened").click() },
+        { label: "Templates …", act: () => this.chooseTemplate() },
+        "Save",
+        { label: "Mechanism file (TOML)  Ctrl+S", act: () => saveFile(this) },
+        { label: "FMU  Ctrl+E", act: () => exportFmu(this) },
+        { label: "Copy a link", act: () => shareLink(this) },
+      ],
+      [box.left, box.bottom + 2],
+    );
+  }
+
+  async chooseTemplate() {
+    const name = await openWindow(this.root, "Templates", (form, dialog) => {
+      const list = add(form, "div", { className: "templates" });
+      for (const template of this.templates) {
+        const button = add(list, "button", { type: "button" });
+        add(button, "strong", { textContent: template.name });
+        add(button, "span", { textContent: template.description });
+        button.addEventListener("click", () => dialog.close(template.name));
+      }
+      buttonRow(form, ["Cancel", ""]);
+    });
+    const template = this.templates.find((each) => each.name === name);
+    if (template) {
+      this.open({ name: `${template.name}.toml`, text: template.text, files: template.files });
+    }
+  }
+
+  async openFiles(files) {
+    const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));
+    const main = texts.find(([name]) => name.toLowerCase().endsWith(".toml"));
+    if (!main) {
+      this.say("Open a mechanism file, `.toml`, together with the tables that it names");
+      return;
+    }
+    this.open({ name: main[0], text: main[1], files: texts.filter((each) => each !== main) });
+  }
+
+  help() {
+    openWindow(this.root, "Drawing a mechanism", (form) => {
+      const list = add(form, "ol");
+      for (const step of [
+        "Draw **links**: click both ends. On a pin the link joins; with Ctrl the end is a pivot on ground.",
+        "Fix points to **ground** with *Pivot*, or let them slide with *Slider*.",
+        "Add a **driver** at a pin or slider: it is the FMU's input.",
+        "Choose **Motion** and pull: the mechanism moves. *Export FMU* takes it along.",
+      ]) {
+        add(list, "li", { textContent: step.replaceAll("*", "") });
+      }
+      const keys = add(form, "dl", { className: "keys-list" });
+      const told = [
+        ...Object.values(TOOLS).map((tool) => [tool.key.toUpperCase(), tool.label]),
+        ["Shift", "without grid and directions"],
+        ["digits", "the length of what is drawn"],
+        ["Esc", "give up; then Select"],
+        ["Delete", "remove what is selected"],
+        ["Ctrl+Z, Ctrl+Y", "undo, redo"],
+        ["0", "show all"],
+        ["Alt+M", "Design or Motion"],
+      ];
+      for (const [key, text] of told) {
+        add(keys, "dt", { textContent: key });
+        add(keys, "dd", { textContent: text });
+      }
+      buttonRow(form, ["Close", ""]);
+    });
+  }
+}
+
+/** Returns place and insertion of the one change that makes another text of a text. */
+function changeOf(before, after) {
+  let from = 0;
+  const least = Math.min(before.length, after.length);
+  while (from < least && before[from] === after[from]) {
+    from += 1;
+  }
+  let end = 0;
+  while (end < least - from && before[before.length - 1 - end] === after[after.length - 1 - end]) {
+    end += 1;
+  }
+  return [from, before.length - end, after.slice(from, after.length - end)];
+}
+
+/** Returns a message as a sentence. */
+function sentence(text) {
+  return text && text[0].toUpperCase() + text.slice(1);
+}
+
+/** The file on the disk that `biela studio FILE` keeps in step. */
+class Disk {
+  constructor(token, version) {
+    this.token = token;
+    this.version = version;
+  }
+
+  async write(text) {
+    if (text === this.text) {
+      return;
+    }
+    const answer = await fetch("file", {
+      method: "PUT",
+      headers: { "X-Biela-Token": this.token, "X-Biela-Version": this.version },
+      body: text,
+    });
+    if (answer.ok) {
+      this.text = text;
+      this.version = await answer.text();
+    } else {
+      studio.say(`The file was not written: ${await answer.text()}`);
+    }
+  }
+}
+
+let studio;
+
+async function begin() {
+  const root = document.querySelector(".studio");
+  const given = JSON.parse(document.getElementById("studio-data").textContent);
+  const module = await WebAssembly.compile(await unpack("live-solver").arrayBuffer());
+  studio = new Studio(root, module, given.parts, given.templates);
+  studio.schema = given.schema;
+  root.studio = studio;
+  let file = given.file ?? (await fileOfLink().catch(() => null));
+  if (given.token) {
+    studio.disk = new Disk(given.token, given.version);
+    studio.disk.text = given.file.text;
+  }
+  if (!file) {
+    try {
+      file = JSON.parse(localStorage.getItem(KEPT));
+    } catch {
+      file = null;
+    }
+  }
+  studio.open(file ?? { name: "mechanism.toml", text: EMPTY });
+  root.classList.add("ready");
+}
+
+begin().catch((error) => {
+  const place = document.querySelector(".studio .failed");
+  place.hidden = false;
+  place.textContent = `This browser cannot run the studio: ${error.message}`;
+  throw error;
+});
