@@ -44,7 +44,7 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
 .PHONY: help demo test bench fuzz attack lint build module setup install uninstall refresh lock clean \
-    runtimes licences advisories wheel dist test-platforms test-install page test-page gallery docs
+    runtimes licences advisories wheel dist test-platforms test-install page test-page studio test-studio gallery docs
 .NOTPARALLEL:
 
 help: ## show this list
@@ -116,7 +116,17 @@ runtimes: ## build the library that goes into an FMU for all platforms (ONLY='wi
 	@bash scripts/runtimes.sh $(ONLY)
 
 page: ## build the solver that pages hold (WebAssembly), for `biela page`, `watch` and `export`
-	@bash scripts/page.sh
+	@bash scripts/page.sh page
+
+studio: build page ## build the studio and write it into target/studio, for any web server or the disk
+	@bash scripts/page.sh studio
+	@libraries=$$(bash scripts/runtimes.sh --current); \
+	    target/release/biela studio --write target/studio $${libraries:+--runtime target/runtimes}
+
+# The studio draws, moves and exports in a browser; FMPy runs what it exports.
+test-studio: export BIELA_BIN := $(CURDIR)/target/release/biela
+test-studio: setup studio ## draw mechanisms in the studio with mouse and keys (Chromium or Chrome)
+	$(PYTHON) -m pytest tests/studio
 
 # Beside the program the tests find what `make page` has built.
 test-page: export BIELA_BIN := $(CURDIR)/target/release/biela
@@ -153,7 +163,7 @@ install: build ## install under PREFIX (default: ~/.local)
 	@for library in "$(LIB_DIR)"/*/biela.*; do \
 	    [ ! -f "$$library" ] || { rm -f "$$library" && echo "removing the installed $$library"; }; \
 	done
-	@rm -f "$(LIB_DIR)/page.wasm"
+	@rm -f "$(LIB_DIR)/page.wasm" "$(LIB_DIR)/studio.wasm"
 	install -m 755 target/release/$(BUILT_LIBRARY) "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
 	@for library in $$(bash scripts/runtimes.sh --current); do \
 	    echo "installing $$library"; \
@@ -164,12 +174,12 @@ install: build ## install under PREFIX (default: ~/.local)
 	    ls "$(LIB_DIR)/$$folder"/biela.* >/dev/null 2>&1 || \
 	        echo "without a library for $$folder: \`make runtimes\` builds it"; \
 	done
-	@solver=$$(bash scripts/page.sh --current); if [ -n "$$solver" ]; then \
-	    echo 'installing page.wasm'; \
-	    install -m 644 "$$solver" "$(LIB_DIR)/page.wasm"; \
-	else \
-	    echo 'without `make page`, pages play motions computed beforehand'; \
-	fi
+	@for name in page studio; do \
+	    solver=$$(bash scripts/page.sh $$name --current); \
+	    [ -z "$$solver" ] || { echo "installing $$name.wasm"; install -m 644 "$$solver" "$(LIB_DIR)/"; }; \
+	done
+	@[ -f "$(LIB_DIR)/page.wasm" ] || echo 'without `make page`, pages play motions computed beforehand'
+	@[ -f "$(LIB_DIR)/studio.wasm" ] || echo 'without `make studio` there is no `biela studio`'
 	install -m 644 $(MECHANISMS) "$(SHARE_DIR)/mechanisms"
 	@case ":$$PATH:" in *":$(BIN_DIR):"*) ;; *) \
 	    echo 'add $(BIN_DIR) to the PATH: export PATH="$(BIN_DIR):$$PATH"' ;; \
@@ -178,7 +188,7 @@ install: build ## install under PREFIX (default: ~/.local)
 uninstall: ## remove what `make install` put under PREFIX
 	rm -f "$(BIN_DIR)/biela"
 	for folder in $(PLATFORMS); do rm -f "$(LIB_DIR)/$$folder"/biela.*; done
-	rm -f "$(LIB_DIR)/page.wasm"
+	rm -f "$(LIB_DIR)/page.wasm" "$(LIB_DIR)/studio.wasm"
 	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
 	@rmdir $(foreach folder,$(PLATFORMS),"$(LIB_DIR)/$(folder)") "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 

@@ -44,7 +44,9 @@ archive() { # TARGET
 }
 
 [ $# -gt 0 ] || set -- "$(own_platform)"
-[ -n "$(bash scripts/page.sh --current)" ] || bash scripts/page.sh
+for name in page studio; do
+    [ -n "$(bash scripts/page.sh "$name" --current)" ] || bash scripts/page.sh "$name"
+done
 libraries=$(bash scripts/runtimes.sh --current)
 for platform in "$@"; do
     case $libraries in *"$platform/"*) ;; *) bash scripts/runtimes.sh "$platform" ;; esac

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Builds the solver that pages hold, into target/runtimes/page.wasm, from where `make install`,
-# `make wheel` and the program in target/ take it. The same sources and the same compiler give the
-# same bytes.
+# Builds the solver that pages hold, or the studio's, into target/runtimes/page.wasm or studio.wasm,
+# from where `make install`, `make wheel` and the program in target/ take it. The same sources and the
+# same compiler give the same bytes.
 #
-#   scripts/page.sh              builds it
-#   scripts/page.sh --current    prints its path if it was built from these sources
+#   scripts/page.sh page                builds that of pages
+#   scripts/page.sh studio              builds that of the studio
+#   scripts/page.sh page --current      prints its path if it was built from these sources
 #
 # Needs the target wasm32-unknown-unknown of Rust, which rustup adds. Debian's packages rustc-web,
 # cargo-web and rust-web-src, with the linker of rustup's toolchain, take its place.
@@ -16,13 +17,21 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 TARGET=wasm32-unknown-unknown
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
 OUT=$PWD/target/runtimes
-# Usual size, packed, at most [bytes]: each page and each FMU holds the solver.
-USUAL_SIZE=1100000
+name=${1:-page}
+# Usual size, packed, at most [bytes]: each page and each FMU holds the solver of pages.
+case $name in
+page) usual_size=1100000 made_of='page' ;;
+studio) usual_size=1700000 made_of='page studio' ;;
+*) fail "no solver is called \`$name\`" "It is page or studio." ;;
+esac
 
 # Prints a digest of all that the solver is built from.
-sources() { digest_of src page scripts/page.sh Cargo.toml Cargo.lock; }
+# shellcheck disable=SC2086  # a list
+sources() { digest_of src $made_of scripts/page.sh Cargo.toml Cargo.lock; }
 
-current() { [ -f "$OUT/page.wasm" ] && [ "$(cat "$OUT/.page-sources" 2>/dev/null)" = "$(sources)" ]; }
+current() {
+    [ -f "$OUT/$name.wasm" ] && [ "$(cat "$OUT/.$name-sources" 2>/dev/null)" = "$(sources)" ]
+}
 
 # Whether a compiler has the standard library for the target.
 has_target() { # RUSTC
@@ -40,8 +49,8 @@ get_target() {
     can_apt && apt_install rustc-web cargo-web rust-web-src lld
 }
 
-if [ "${1:-}" = --current ]; then
-    ! current || printf '%s\n' "$OUT/page.wasm"
+if [ "${2:-}" = --current ]; then
+    ! current || printf '%s\n' "$OUT/$name.wasm"
     exit
 fi
 
@@ -56,8 +65,8 @@ built_from=$(sources)
 flags="--remap-path-prefix=$PWD=. --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
 # With half the usual threshold for inlining the solver is an eighth smaller, and not slower.
 flags="$flags -Cllvm-args=-inline-threshold=100"
-arguments=(build --locked --package biela-page --profile page --target "$TARGET")
-say "building the solver for pages; the first time this takes some minutes"
+arguments=(build --locked --package "biela-$name" --profile page --target "$TARGET")
+say "building the solver of the $name; the first time this takes some minutes"
 if has_target rustc; then
     RUSTFLAGS="$flags" cargo "${arguments[@]}"
 else
@@ -70,9 +79,9 @@ else
         /usr/bin/cargo "${arguments[@]}" -Zbuild-std=std,panic_abort
 fi
 mkdir -p "$OUT"
-cp "$CARGO_TARGET_DIR/$TARGET/page/biela_page.wasm" "$OUT/page.wasm.new"
-packed=$(gzip -9 -c "$OUT/page.wasm.new" | wc -c)
-say "page.wasm: $(wc -c <"$OUT/page.wasm.new") bytes, $packed packed"
-[ "$packed" -le "$USUAL_SIZE" ] || say "note: it usually has at most $USUAL_SIZE bytes, packed"
-mv "$OUT/page.wasm.new" "$OUT/page.wasm"
-printf '%s\n' "$built_from" >"$OUT/.page-sources"
+cp "$CARGO_TARGET_DIR/$TARGET/page/biela_$name.wasm" "$OUT/$name.wasm.new"
+packed=$(gzip -9 -c "$OUT/$name.wasm.new" | wc -c)
+say "$name.wasm: $(wc -c <"$OUT/$name.wasm.new") bytes, $packed packed"
+[ "$packed" -le "$usual_size" ] || say "note: it usually has at most $usual_size bytes, packed"
+mv "$OUT/$name.wasm.new" "$OUT/$name.wasm"
+printf '%s\n' "$built_from" >"$OUT/.$name-sources"
