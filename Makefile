@@ -44,7 +44,8 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
 .PHONY: help demo test bench fuzz attack lint build module setup install uninstall refresh lock clean \
-    runtimes licences advisories wheel dist test-platforms test-install page test-page studio test-studio gallery docs
+    runtimes licences advisories wheel dist test-platforms test-install page test-page studio test-studio \
+    editor gallery docs
 .NOTPARALLEL:
 
 help: ## show this list
@@ -132,6 +133,9 @@ test-studio: setup studio ## draw mechanisms in the studio with mouse and keys (
 test-page: export BIELA_BIN := $(CURDIR)/target/release/biela
 test-page: setup build page ## move mechanisms on pages in a headless browser (Chromium or Chrome)
 	$(PYTHON) -m pytest tests/page
+
+editor: ## build the studio's text editor (npm)
+	@bash scripts/editor.sh
 
 gallery: build page ## write pages of all mechanisms, to be moved by hand, into target/gallery
 	@python3 scripts/gallery.py
