@@ -127,7 +127,9 @@ studio: build page ## build the studio and write it into target/studio, for any 
 # The studio draws, moves and exports in a browser; FMPy runs what it exports.
 test-studio: export BIELA_BIN := $(CURDIR)/target/release/biela
 test-studio: setup studio ## draw mechanisms in the studio with mouse and keys (Chromium or Chrome)
+	$(PYTHON) -m pip install --quiet --require-hashes -r tests/studio/requirements.txt
 	$(PYTHON) -m pytest tests/studio
+	! command -v node >/dev/null || node --test tests/studio
 
 # Beside the program the tests find what `make page` has built.
 test-page: export BIELA_BIN := $(CURDIR)/target/release/biela

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Refreshes tests/fmpy/requirements.txt and scripts/site/requirements.txt, each from the
+# Refreshes the requirements.txt of tests/fmpy, tests/studio and scripts/site, each from the
 # requirements.in beside it: newest versions, every hash, for every system and Python from 3.10 on.
 # Needs the network, and .venv.
 set -euo pipefail
@@ -17,7 +17,7 @@ if ! has uv; then
     fi
 fi
 
-for lock in "$LOCK" scripts/site/requirements.txt; do
+for lock in "$LOCK" tests/studio/requirements.txt scripts/site/requirements.txt; do
     new=$lock.new
     trap 'rm -f "$new"' EXIT
     {

@@ -10,9 +10,11 @@ use super::commands::check::json::report_on;
 use super::commands::export::{pack, platform, version};
 use super::commands::range;
 use super::conditions::check_limits;
+use super::documentation::show;
 use super::form::Form;
 use super::input::Input;
 use super::{conditions, page_solver, runtime};
+use crate::drawing::animation::moving_gif;
 use crate::fmi::{Platform, RuntimeLibrary};
 use crate::kinematics::End;
 use crate::mechanism::{DriverId, Mechanism, ParameterId, Source};
@@ -66,6 +68,21 @@ pub fn archive_with(
 ) -> Result<Vec<u8>, String> {
     let form = Form::new(version(fmi)?, false);
     archive_of(source, mechanism, form, libraries, page)
+}
+
+/// Returns a moving picture, a GIF, of the motion that the documentation of an FMU shows.
+///
+/// # Errors
+///
+/// The mechanism does not assemble.
+pub fn gif(source: &Source, mechanism: &Arc<Mechanism>) -> Result<Vec<u8>, String> {
+    let input = Input {
+        source: source.clone(),
+        mechanism: Arc::clone(mechanism),
+    };
+    let mut solver = input.assemble().map_err(|error| error.to_string())?;
+    let shown = show(&mut solver).map_err(|error| error.to_string())?;
+    Ok(moving_gif(&shown.animation))
 }
 
 fn archive_of(

@@ -85,7 +85,7 @@ export class Menu {
         add(this.place, "p", { textContent: item });
         continue;
       }
-      const button = add(this.place, "button", { type: "button", disabled: !item.act });
+      const button = add(this.place, "button", { type: "button", disabled: !item.act || Boolean(item.why) });
       button.setAttribute("role", "menuitem");
       say(button, item.label);
       if (item.why) {

@@ -44,11 +44,11 @@ export async function makeFmu(studio, { fmi, platforms, page }) {
   }
   const solver = page && studio.parts.includes("page") ? await base64Of(await loadPart("page")) : undefined;
   const { name, files } = studio.file;
-  const answer = studio.ask({ do: "export", name, text: studio.text, files, fmi, libraries, page: solver });
-  if (!answer?.fmu) {
-    throw new Error((answer?.problems ?? ["the solver has failed"]).join("\n"));
+  const answer = studio.ask({ do: "export", name, text: studio.fileText, files, fmi, libraries, page: solver });
+  if (!answer?.content) {
+    throw new Error(answer?.problems ?? "the solver has failed");
   }
-  return bytesOf(answer.fmu);
+  return bytesOf(answer.content);
 }
 
 /** Asks how the FMU shall be, and saves it. */
@@ -97,7 +97,61 @@ export async function exportFmu(studio) {
 
 /** Saves the mechanism file. */
 export function saveFile(studio) {
-  save(`${studio.name}.toml`, "application/toml", studio.text);
+  save(`${studio.name}.toml`, "application/toml", studio.fileText);
+}
+
+/** Saves what the solver makes of the mechanism: `kind` is `dxf` or `gif`. */
+export function saveMade(studio, kind, type) {
+  const { name, files } = studio.file;
+  const answer = studio.ask({ do: kind, name, text: studio.fileText, files });
+  if (answer?.content) {
+    save(`${studio.name}.${kind}`, type, bytesOf(answer.content));
+  }
+  studio.say([answer?.problems, ...(answer?.notes ?? [])].filter(Boolean).join("; "));
+}
+
+/** Saves the drawing as SVG, or as PNG of twice its size. */
+export async function saveDrawing(studio, kind) {
+  const picture = studio.sheet.svg.cloneNode(true);
+  const box = studio.sheet.svg.getBBox();
+  const room = 24;
+  const [width, height] = [box.width + 2 * room, box.height + 2 * room];
+  for (const [key, value] of Object.entries({
+    xmlns: SVG,
+    viewBox: `${box.x - room} ${box.y - room} ${width} ${height}`,
+    width,
+    height,
+    style: "background: #fff",
+  })) {
+    picture.setAttribute(key, value);
+  }
+  picture.querySelectorAll(".arrows, .covered").forEach((part) => part.remove());
+  const svg = new XMLSerializer().serializeToString(picture);
+  if (kind === "svg") {
+    save(`${studio.name}.svg`, "image/svg+xml", svg);
+    return;
+  }
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
+  await image.decode();
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [2 * width, 2 * height];
+  const brush = canvas.getContext("2d");
+  brush.fillStyle = "#fff";
+  brush.fillRect(0, 0, canvas.width, canvas.height);
+  brush.drawImage(image, 0, 0, canvas.width, canvas.height);
+  canvas.toBlob((content) => save(`${studio.name}.png`, "image/png", content), "image/png");
+}
+
+/** Reads a mechanism of another program; returns a file, or says why not. */
+export async function importFile(studio, file) {
+  const content = await base64Of(await file.arrayBuffer());
+  const answer = studio.ask({ do: "import", name: file.name, content });
+  if (!answer?.text) {
+    studio.say(`${file.name}: ${answer?.problems ?? "the solver has failed"}`);
+    return null;
+  }
+  return { name: answer.name, text: answer.text, files: [], notes: answer.notes };
 }
 
 // -- links ------------------------------------------------------------------------------------
@@ -108,7 +162,7 @@ async function through(stream, bytes) {
 
 /** Returns a link that holds the mechanism. */
 export async function linkOf(studio) {
-  const content = JSON.stringify([studio.file.name, studio.text, studio.file.files]);
+  const content = JSON.stringify([studio.file.name, studio.fileText, studio.file.files]);
   const packed = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode(content));
   const word = (await base64Of(packed)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
   return `${location.href.split("#")[0]}#m=${word}`;

@@ -3,7 +3,7 @@
 import { add, say } from "./controls.js";
 import { Design } from "./design.js";
 import { Menu, askName, buttonRow, openWindow } from "./dialogs.js";
-import { exportFmu, fileOfLink, saveFile, shareLink } from "./export.js";
+import { exportFmu, fileOfLink, importFile, saveDrawing, saveFile, saveMade, shareLink } from "./export.js";
 import { Inspector } from "./inspector.js";
 import { Live } from "./live.js";
 import { Sheet } from "./sheet.js";
@@ -53,6 +53,11 @@ class Studio {
     return this.view.text ?? "";
   }
 
+  /** The text as the file has it. */
+  get fileText() {
+    return this.text.replaceAll("\n", this.lineEnd);
+  }
+
   /** The mechanism's name, for files. */
   get name() {
     return this.text.match(/^name\s*=\s*"([A-Za-z0-9_]+)"/m)?.[1] ?? "mechanism";
@@ -91,9 +96,11 @@ class Studio {
   /** Opens a file: a new document. */
   open(file, fit = true) {
     this.file = { name: file.name, files: file.files ?? [] };
+    // The editor has lines of one kind; the file keeps its own.
+    this.lineEnd = file.text.includes("\r\n") ? "\r\n" : "\n";
     this.selection = null;
     this.design.answers.clear();
-    const answer = this.ask({ do: "begin", ...this.file, text: file.text, scale: this.sheet.scale });
+    const answer = this.ask({ do: "begin", ...this.file, text: file.text.replaceAll("\r\n", "\n"), scale: this.sheet.scale });
     this.show(answer, { anew: true });
     if (fit) {
       this.fit();
@@ -214,7 +221,9 @@ class Studio {
     this.typedAt = -Infinity;
     this.design.drop();
     this.setMode("design");
+    const before = this.text;
     this.show(this.ask({ do: word, scale: this.sheet.scale }));
+    this.editor.show(changeOf(before, this.text)[0]);
   }
 
   /** Keeps the text in this browser, and in the file that `biela studio` serves. */
@@ -227,7 +236,7 @@ class Studio {
       } catch {
         // A full or forbidden store: the file can still be saved.
       }
-      this.disk?.write(text);
+      this.disk?.write(this.fileText);
     }, 400);
   }
 
@@ -539,6 +548,10 @@ class Studio {
         "Save",
         { label: "Mechanism file (TOML)  Ctrl+S", act: () => saveFile(this) },
         { label: "FMU  Ctrl+E", act: () => exportFmu(this) },
+        { label: "Picture (SVG)", act: () => saveDrawing(this, "svg"), why: this.sheet.svg ? "" : "Nothing is drawn" },
+        { label: "Picture (PNG)", act: () => saveDrawing(this, "png"), why: this.sheet.svg ? "" : "Nothing is drawn" },
+        { label: "Drawing for the workshop (DXF)", act: () => saveMade(this, "dxf", "image/vnd.dxf") },
+        { label: "Moving picture (GIF)", act: () => saveMade(this, "gif", "image/gif") },
         { label: "Copy a link", act: () => shareLink(this) },
       ],
       [box.left, box.bottom + 2],
@@ -563,10 +576,19 @@ class Studio {
   }
 
   async openFiles(files) {
+    const other = files.find((file) => /\.(asmt|linkage2|json|dxf|pmks)$/i.test(file.name));
+    if (other) {
+      const imported = await importFile(this, other);
+      if (imported) {
+        this.open(imported);
+        this.say(imported.notes.join("; "));
+      }
+      return;
+    }
     const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));
     const main = texts.find(([name]) => name.toLowerCase().endsWith(".toml"));
     if (!main) {
-      this.say("Open a mechanism file, `.toml`, together with the tables that it names");
+      this.say("Open a mechanism file, `.toml`, together with the tables that it names, or a file of another program: `.asmt`, `.linkage2`, `.json`, `.dxf`");
       return;
     }
     this.open({ name: main[0], text: main[1], files: texts.filter((each) => each !== main) });

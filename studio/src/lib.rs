@@ -1,4 +1,5 @@
-//! `biela::studio` for a browser, with the export of FMUs.
+//! `biela::studio` for a browser, with what leaves and enters it: FMUs, pictures, mechanisms of other
+//! programs.
 
 #[path = "../../page/src/abi.rs"]
 mod abi;
@@ -7,16 +8,23 @@ use std::sync::Arc;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use biela::cli::archive_with;
+use biela::cli::{archive_with, gif};
+use biela::drawing::Scene;
+use biela::exchange::{Format, LengthUnit, WorkshopDrawing};
 use biela::fmi::{Platform, RuntimeLibrary};
+use biela::kinematics::{Path, Solver};
 use biela::mechanism::{Mechanism, Severity, Source};
 use serde_json::{Value, json};
 
-/// A studio that also writes FMUs.
+/// A studio that also exports and imports. Contents of files are in base64; a request that fails is
+/// answered by `problems`, one per line.
 ///
-/// The request `export` has `name`, `text`, `files`, `fmi` (`2` or `3`), `libraries` (pairs of a
-/// platform and a library in base64) and maybe `page` (the solver for pages, likewise). Its answer
-/// has the FMU, `fmu` in base64, or `problems`.
+/// | `do` | further keys | answer |
+/// |---|---|---|
+/// | `export` | `name`, `text`, `files`, `fmi` (`2` or `3`), `libraries` (platforms with libraries), maybe `page` (the solver for pages) | `content` of the FMU |
+/// | `dxf` | `name`, `text`, `files` | `content` of the drawing of the pose at the start, `notes` |
+/// | `gif` | `name`, `text`, `files` | `content` of the moving picture |
+/// | `import` | `name` of a file or a link, its `content`, maybe `length` (its unit) | `text` of the mechanism file, `name`, `notes` |
 #[derive(Default)]
 struct Host {
     studio: biela::studio::Host,
@@ -24,13 +32,25 @@ struct Host {
 
 impl Host {
     fn answer(&mut self, request: &str) -> Value {
-        if request.starts_with("{\"do\":\"export\"") {
-            return match serde_json::from_str(request).map_err(|error| error.to_string()) {
-                Ok(request) => export(&request).unwrap_or_else(|problem| json!({ "problems": [problem] })),
-                Err(error) => json!({ "error": error }),
-            };
-        }
-        self.studio.answer(request)
+        const OWN: [&str; 4] = ["export", "dxf", "gif", "import"];
+        // The word comes first, so that no other request is read twice.
+        let word = request.strip_prefix("{\"do\":\"").and_then(|rest| rest.split('"').next());
+        let Some(word) = word.filter(|word| OWN.contains(word)) else {
+            return self.studio.answer(request);
+        };
+        let request: Value = match serde_json::from_str(request) {
+            Ok(request) => request,
+            Err(error) => return json!({ "error": error.to_string() }),
+        };
+        let answer = match word {
+            "import" => import(&request),
+            _ => mechanism(&request).and_then(|(source, mechanism)| match word {
+                "export" => export(&request, &source, &mechanism),
+                "dxf" => dxf(mechanism),
+                _ => Ok(json!({ "content": STANDARD.encode(gif(&source, &mechanism)?) })),
+            }),
+        };
+        answer.unwrap_or_else(|problems| json!({ "problems": problems }))
     }
 
     fn drive(&mut self, driver: usize, value: f64) -> bool {
@@ -42,29 +62,73 @@ impl Host {
     }
 }
 
-fn export(request: &Value) -> Result<Value, String> {
-    let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let pairs = |key: &str| {
-        let list = request[key].as_array().map_or(&[][..], Vec::as_slice);
-        list.iter().map(|pair| (word(&pair[0]), word(&pair[1]))).collect::<Vec<_>>()
-    };
-    let source = Source::new(word(&request["name"]), word(&request["text"]));
-    let source = source.with_files(pairs("files"));
-    let (mechanism, _) = Mechanism::parse(&source).map_err(|problems| {
-        let errors = problems.iter().filter(|problem| problem.severity == Severity::Error);
-        let errors: Vec<String> = errors.map(|error| error.one_line(&source)).collect();
-        errors.join("\n")
-    })?;
-    let unpack = |packed: &str| STANDARD.decode(packed).map_err(|error| error.to_string());
-    let libraries = pairs("libraries").into_iter().map(|(platform, packed)| {
-        let known = Platform::named(&platform);
-        let platform = known.ok_or_else(|| format!("no platform is called `{platform}`"))?;
-        let content = unpack(&packed)?;
-        Ok(RuntimeLibrary { platform, content: content.into() })
+/// Returns a text of a request, empty if there is none.
+fn word<'a>(request: &'a Value, key: &str) -> &'a str {
+    request[key].as_str().unwrap_or_default()
+}
+
+/// Returns pairs of texts of a request.
+fn pairs(request: &Value, key: &str) -> Vec<(String, String)> {
+    let list = request[key].as_array().map_or(&[][..], Vec::as_slice);
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    list.iter().map(|pair| (text(&pair[0]), text(&pair[1]))).collect()
+}
+
+fn unpacked(packed: &str) -> Result<Vec<u8>, String> {
+    STANDARD.decode(packed).map_err(|error| error.to_string())
+}
+
+/// Reads the mechanism of a request.
+fn mechanism(request: &Value) -> Result<(Source, Arc<Mechanism>), String> {
+    let source = Source::new(word(request, "name"), word(request, "text"));
+    let source = source.with_files(pairs(request, "files"));
+    match Mechanism::parse(&source) {
+        Ok((mechanism, _)) => Ok((source, Arc::new(mechanism))),
+        Err(problems) => {
+            let errors = problems.iter().filter(|problem| problem.severity == Severity::Error);
+            let errors: Vec<String> = errors.map(|error| error.one_line(&source)).collect();
+            Err(errors.join("\n"))
+        }
+    }
+}
+
+fn export(request: &Value, source: &Source, mechanism: &Arc<Mechanism>) -> Result<Value, String> {
+    let libraries = pairs(request, "libraries").into_iter().map(|(name, packed)| {
+        let platform = Platform::named(&name);
+        let platform = platform.ok_or_else(|| format!("no platform is called `{name}`"))?;
+        let content = unpacked(&packed)?.into();
+        Ok(RuntimeLibrary { platform, content })
     });
     let libraries = libraries.collect::<Result<Vec<_>, String>>()?;
-    let page = request["page"].as_str().map(unpack).transpose()?;
-    let fmi = word(&request["fmi"]);
-    let fmu = archive_with(&source, &Arc::new(mechanism), &fmi, &libraries, page.as_deref())?;
-    Ok(json!({ "fmu": STANDARD.encode(fmu) }))
+    let page = request["page"].as_str().map(unpacked).transpose()?;
+    let fmi = word(request, "fmi");
+    let fmu = archive_with(source, mechanism, fmi, &libraries, page.as_deref())?;
+    Ok(json!({ "content": STANDARD.encode(fmu) }))
+}
+
+fn dxf(mechanism: Arc<Mechanism>) -> Result<Value, String> {
+    let path = Path::new(&mechanism);
+    let solver = Solver::assembled(mechanism, &path);
+    let mut solver = solver.map_err(|error| error.to_string())?;
+    let scene = Scene::new(&mut solver, true);
+    let drawing = WorkshopDrawing::new(&scene, &solver);
+    let notes: Vec<String> = drawing.notes.iter().map(ToString::to_string).collect();
+    Ok(json!({ "content": STANDARD.encode(drawing.text), "notes": notes }))
+}
+
+fn import(request: &Value) -> Result<Value, String> {
+    let name = word(request, "name");
+    let content = unpacked(word(request, "content"))?;
+    let mut units = LengthUnit::ALL.into_iter();
+    let length = units.find(|unit| unit.name() == word(request, "length"));
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    let format = Format::of(&extension.to_lowercase(), &content);
+    let draft = format.and_then(|format| format.read(&content, stem, length));
+    let draft = draft.map_err(|error| error.to_string())?;
+    let notes: Vec<String> = draft.notes.iter().map(ToString::to_string).collect();
+    Ok(json!({
+        "name": format!("{}.toml", draft.mechanism_name()),
+        "text": draft.write(name),
+        "notes": notes,
+    }))
 }
