@@ -1,9 +1,27 @@
-// A hand that pulls bodies, by mouse or finger; by a spring while freedoms move.
+// A hand that pulls bodies, by mouse or finger; by a spring while freedoms move. The wheel zooms, and
+// what is zoomed is moved by its bare sheet.
 
 /** Lets the pointer pull the bodies of a picture; `live` solves and draws. */
 export function giveHand(paper, live) {
   let held = null;
   let waiting = false;
+  let panned = null;
+
+  paper.addEventListener(
+    "wheel",
+    (event) => {
+      // On a page that scrolls, the wheel alone is the page's.
+      if (event.ctrlKey || live.root.closest(".studio")) {
+        event.preventDefault();
+        const lines = event.deltaMode === 1 ? 16 : 1;
+        const at = live.picture.onSheet(event.clientX, event.clientY);
+        live.picture.zoom(Math.exp(-0.0015 * lines * event.deltaY), at);
+        live.fit();
+      }
+    },
+    { passive: false },
+  );
+  paper.addEventListener("dblclick", () => live.picture.zoomed && live.redraw(false));
 
   paper.addEventListener("pointerdown", (event) => {
     if (event.button !== 0 || held) {
@@ -11,6 +29,11 @@ export function giveHand(paper, live) {
     }
     const body = live.picture.bodyAt(event.clientX, event.clientY);
     if (body === null) {
+      if (live.picture.zoomed) {
+        event.preventDefault();
+        paper.setPointerCapture(event.pointerId);
+        panned = { id: event.pointerId, at: live.picture.onSheet(event.clientX, event.clientY) };
+      }
       return;
     }
     event.preventDefault();
@@ -37,6 +60,10 @@ export function giveHand(paper, live) {
   }
 
   paper.addEventListener("pointermove", (event) => {
+    if (panned?.id === event.pointerId) {
+      live.picture.pan(panned.at, live.picture.onSheet(event.clientX, event.clientY));
+      return;
+    }
     if (held?.id !== event.pointerId) {
       paper.classList.toggle("near", live.picture.bodyAt(event.clientX, event.clientY) !== null);
       return;
@@ -49,6 +76,7 @@ export function giveHand(paper, live) {
   });
 
   function release(event) {
+    panned = null;
     if (held?.id === event.pointerId) {
       if (waiting) {
         pull();

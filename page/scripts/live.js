@@ -311,7 +311,7 @@ export class Live {
 
   /** After a move: what has left the picture, and charts, are drawn anew. */
   settle() {
-    if (this.picture.leaves) {
+    if (!this.picture.zoomed && this.picture.leaves) {
       this.redraw(false);
     }
     this.chart.draw();

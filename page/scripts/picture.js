@@ -20,6 +20,7 @@ export class Picture {
     if (view) {
       this.svg.setAttribute("viewBox", view);
     } else {
+      this.zoomed = false;
       this.most = { velocity: 0, acceleration: 0, force: 0 };
     }
     this.moving = new Parts(this.svg, parts);
@@ -97,6 +98,24 @@ export class Picture {
       const factor = most > 1e-9 ? 1 / most : 0;
       paths[index].setAttribute("d", arrow(from, factor * x, factor * y));
     });
+  }
+
+  /** Zooms by a factor; a place on the sheet stays. */
+  zoom(factor, [x, y]) {
+    const view = this.svg.viewBox.baseVal;
+    const [left, top] = [x - (x - view.x) / factor, y - (y - view.y) / factor];
+    this.look(left, top, view.width / factor, view.height / factor);
+  }
+
+  /** Moves the visible part of the sheet so that one place goes to another. */
+  pan([x, y], [u, v]) {
+    const view = this.svg.viewBox.baseVal;
+    this.look(view.x - (u - x), view.y - (v - y), view.width, view.height);
+  }
+
+  look(...view) {
+    this.svg.setAttribute("viewBox", view.map(fix).join(" "));
+    this.zoomed = true;
   }
 
   /** Returns the place on the sheet of a point of the screen. */

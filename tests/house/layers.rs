@@ -15,7 +15,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 
 /// The layers, and those that each may use.
-const LAYERS: [(&str, &[&str]); 9] = [
+const LAYERS: [(&str, &[&str]); 10] = [
     ("unit", &[]),
     ("mechanism", &["unit"]),
     ("kinematics", &["unit", "mechanism"]),
@@ -24,6 +24,10 @@ const LAYERS: [(&str, &[&str]); 9] = [
     (
         "page",
         &["unit", "mechanism", "kinematics", "dynamics", "drawing"],
+    ),
+    (
+        "studio",
+        &["unit", "mechanism", "kinematics", "drawing", "page"],
     ),
     ("fmi", &["unit", "mechanism", "kinematics", "dynamics"]),
     (
