@@ -396,11 +396,16 @@ export class Design {
   mark() {
     const { sheet } = this;
     sheet.clear();
-    this.markSelection();
     this.placeTyped();
     if (!this.studio.isDesign) {
       return;
     }
+    if (!this.drag) {
+      for (const { at, markers } of this.sketch.points) {
+        sheet.words(at, ownMarker({ markers }).split(".")[1], "letter", [-16, -9]);
+      }
+    }
+    this.markSelection();
     const tool = TOOLS[this.tool];
     const { over } = this;
     if (over && !this.drag && (this.tool !== "select" || over.point || over.body)) {

@@ -75,7 +75,7 @@ function drawn(sheet, points, place, origin) {
     const long = Math.hypot(dx, dy);
     const turn = Math.round(Math.atan2(dy, dx) / DIRECTIONS) * DIRECTIONS;
     const aside = Math.abs(long * Math.sin(Math.atan2(dy, dx) - turn)) * sheet.scale;
-    if (aside <= LEVEL) {
+    if (aside <= Math.min(LEVEL, distance(sheet.toScreen(at), place))) {
       const rounded = Math.max(step, Math.round(long / step) * step);
       return {
         at: [origin[0] + rounded * Math.cos(turn), origin[1] + rounded * Math.sin(turn)],

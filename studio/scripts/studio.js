@@ -385,6 +385,7 @@ class Studio {
       this.design.hint();
     } else {
       this.design.drop();
+      this.hint("Pull a body with the mouse or a finger; space plays");
       this.live.fit();
     }
   }

@@ -69,7 +69,7 @@ def test_undo_and_redo_of_a_random_drawing(sheet, seed):
         gesture(sheet, hand)
     assert sheet.state in ("empty", "undriven", "driven", "free", "open", "rigid")
     last = sheet.text
-    undo, redo = sheet.page.locator(".undo"), sheet.page.locator(".redo")
+    undo, redo = sheet.page.locator(".bar .undo"), sheet.page.locator(".bar .redo")
     steps = 0
     while undo.is_enabled():
         undo.click()

@@ -91,7 +91,7 @@ pub(super) struct Editing<'a> {
     pub(super) text: TomlText,
     pub(super) drawn: &'a Drawn,
     pub(super) names: Names,
-    /// Decimals of lengths.
+    /// Decimals of points \[m\].
     decimals: usize,
 }
 
@@ -178,14 +178,15 @@ impl<'a> Editing<'a> {
         Ok(self.drawn.frame(Some(id)))
     }
 
-    /// Writes a length \[m\].
+    /// Writes a length \[m\]: finer than points are, so that the ends of a bar are where they were
+    /// drawn.
     pub(super) fn length(&self, value: f64) -> String {
-        length(value, self.decimals)
+        length(value, self.decimals + 1)
     }
 
-    /// Returns a length \[m\] rounded as it is written.
+    /// Returns a coordinate of a point \[m\] as fine as the sheet shows it.
     pub(super) fn rounded(&self, value: f64) -> f64 {
-        self.length(value).parse().unwrap_or(value)
+        length(value, self.decimals).parse().unwrap_or(value)
     }
 
     /// Writes an angle \[rad\].

@@ -296,7 +296,7 @@ fn in_place_of(editing: &Editing, old: &str, value: f64, is_angle: bool) -> Opti
     let decimals = match is_angle {
         true => super::ANGLE_DECIMALS,
         // As fine as lengths in metres are written.
-        false => (editing.decimals as i32 + factor.log10().round() as i32).max(0) as usize,
+        false => (editing.decimals as i32 + 1 + factor.log10().round() as i32).max(0) as usize,
     };
     let number = super::super::number::length(value / factor, decimals);
     Some(format!("\"{number}*{unit}\""))
