@@ -15,6 +15,7 @@
 //! the model description, which comes from the [table of variables](variables()). The FMU reads
 //! the mechanism when the host instantiates it.
 
+#[cfg(feature = "abi")]
 mod abi;
 mod codec;
 pub(crate) mod error;
