@@ -13,8 +13,10 @@ const EDITOR_LICENCES: &str = include_str!("../../studio/editor/licenses.txt");
 const EDITOR: &str = include_str!("../../studio/editor/bundle.js");
 const LIVE: &str = include_str!("../../page/scripts/live.html");
 /// The scripts, behind those of a mechanism that moves; each uses only those before it.
-const OWN_SCRIPTS: [&str; 10] = [
+const OWN_SCRIPTS: [&str; 12] = [
+    include_str!("../../studio/scripts/units.js"),
     include_str!("../../studio/scripts/dialogs.js"),
+    include_str!("../../studio/scripts/background.js"),
     include_str!("../../studio/scripts/sheet.js"),
     include_str!("../../studio/scripts/snap.js"),
     include_str!("../../studio/scripts/tools.js"),

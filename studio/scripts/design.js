@@ -1,15 +1,15 @@
 // Design: the pointer and the keys draw, select and move; the solver answers with text and picture.
 
-import { add, say } from "./controls.js";
-import { askParameter } from "./dialogs.js";
+import { add, shown } from "./controls.js";
+import { askLength, askParameter } from "./dialogs.js";
 import { findAt } from "./snap.js";
 import { TOOLS, ownMarker, unfit } from "./tools.js";
+import { DEGREE, angleOf, lengthOf } from "./units.js";
 
 // Way of the pointer from which a press is a drag [pixels].
 const DRAG = 4;
 // Time for which a finger rests to open the menu [ms].
 const LONG_PRESS = 550;
-const DEGREE = Math.PI / 180;
 
 export class Design {
   /** `studio` asks the solver and shows its views; `sheet` is drawn on. */
@@ -21,7 +21,10 @@ export class Design {
     this.found = [];
     this.pointers = new Map();
     this.answers = new Map();
-    sheet.onLook = () => this.mark();
+    sheet.onLook = () => {
+      studio.background.look();
+      this.mark();
+    };
     this.typed = this.makeTyped();
     this.connect();
   }
@@ -230,6 +233,12 @@ export class Design {
     const tool = TOOLS[this.tool];
     if (this.found.length < tool.least) {
       this.studio.say(tool.hints[Math.min(this.found.length, tool.hints.length - 1)]);
+      return;
+    }
+    if (this.tool === "scale") {
+      const [from, to] = this.found.map((each) => each.at);
+      this.take("select");
+      this.studio.background.scaleBy(from, to);
       return;
     }
     const gesture = tool.gesture(this.found);
@@ -462,7 +471,25 @@ export class Design {
     if (selection?.kind === "body") {
       const body = sketch.bodies.find((each) => each.name === selection.name);
       body?.bars.forEach(([from, to]) => sheet.line(from, to, "selected bar"));
+      body?.bars.forEach((bar, index) => this.markLength(body, bar, index));
     }
+  }
+
+  /** Writes the length of a bar, which a click changes or makes a parameter. */
+  markLength(body, [from, to], index) {
+    const { name, factor } = this.studio.unit;
+    const long = Math.hypot(to[0] - from[0], to[1] - from[1]);
+    const middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+    const words = this.sheet.words(middle, `${shown(long / factor, 5)} ${name}`, "words dimension", [8, -8]);
+    const markers = [body.markers[index], body.markers[(index + 1) % body.markers.length]];
+    words.addEventListener("pointerdown", async (event) => {
+      event.stopPropagation();
+      event.preventDefault();
+      const answer = await askLength(this.studio.root, { markers, long, unit: this.studio.unit });
+      if (answer) {
+        this.studio.gesture({ kind: "length", markers, ...answer });
+      }
+    });
   }
 
   // -- menu and keys -------------------------------------------------------------------------
@@ -540,17 +567,4 @@ export class Design {
 
 function isSame(a, b) {
   return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-12;
-}
-
-/** Reads a length: a number in the sheet's unit, or with a unit of its own. */
-export function lengthOf(text, unit) {
-  const match = text.trim().replace(",", ".").match(/^([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*(mm|cm|m|in|inch)?$/i);
-  const factors = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254, inch: 0.0254 };
-  return match ? Number(match[1]) * (match[2] ? factors[match[2].toLowerCase()] : unit.factor) : NaN;
-}
-
-/** Reads an angle in degrees. */
-export function angleOf(text) {
-  const match = text.trim().replace(",", ".").match(/^([-+]?[0-9.]+)\s*(°|deg)?$/i);
-  return match ? Number(match[1]) * DEGREE : NaN;
 }

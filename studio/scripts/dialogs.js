@@ -1,6 +1,7 @@
 // Small windows that ask and tell.
 
 import { add, say, shown } from "./controls.js";
+import { lengthOf } from "./units.js";
 
 /** Opens a window with a title; `fill` fills its form. Returns the value of the button, "" for none. */
 export function openWindow(root, title, fill) {
@@ -47,6 +48,31 @@ export async function askParameter(root, { parameter, formula, value, unit }) {
     buttonRow(form, ...(fits ? choices : choices.slice(1)));
   });
   return answer || undefined;
+}
+
+/** Asks for the length between two markers, and for a name if it is to be a parameter. */
+export async function askLength(root, { markers, long, unit }) {
+  const before = String(shown(long / unit.factor, 7));
+  let length;
+  let name;
+  const answer = await openWindow(root, "Length", (form) => {
+    say(add(form, "p"), `From \`${markers[0]}\` to \`${markers[1]}\``);
+    const field = (text, value) => {
+      const label = add(form, "label", { textContent: text });
+      return add(label, "input", { type: "text", value, autocomplete: "off", spellcheck: false });
+    };
+    length = field(`Length [${unit.name}] `, before);
+    name = field("Name, to make it a parameter ", "");
+    name.pattern = "[A-Za-z][A-Za-z0-9_]*";
+    name.placeholder = "crank_length";
+    buttonRow(form, ["Set", "set"]);
+    setTimeout(() => length.select());
+  });
+  const value = length.value === before ? long : lengthOf(length.value, unit);
+  if (answer !== "set" || !(value > 0)) {
+    return undefined;
+  }
+  return name.value ? { value, name: name.value } : { value };
 }
 
 /** Asks for a name; "" for none. */

@@ -1,5 +1,6 @@
 // The studio: text and drawing of one mechanism, side by side, and the way out.
 
+import { Background } from "./background.js";
 import { add, say } from "./controls.js";
 import { Design } from "./design.js";
 import { Menu, askName, buttonRow, openWindow } from "./dialogs.js";
@@ -30,6 +31,7 @@ class Studio {
     this.unit = { name: "mm", factor: UNITS.mm };
     this.menu = new Menu(root);
     this.sheet = new Sheet(this.find(".sheet"), () => this.redraw());
+    this.background = new Background(this, this.sheet);
     this.design = new Design(this, this.sheet);
     this.inspector = new Inspector(this, this.find(".inspector"));
     this.makeTools();
@@ -427,7 +429,7 @@ class Studio {
 
   makeTools() {
     const place = this.find(".tools");
-    for (const [name, tool] of Object.entries(TOOLS)) {
+    for (const [name, tool] of Object.entries(TOOLS).filter(([, { label }]) => label)) {
       if (tool.group) {
         add(place, "span", { className: "group", textContent: tool.group });
       }
@@ -482,6 +484,10 @@ class Studio {
     }
     document.addEventListener("keydown", (event) => this.key(event));
     document.addEventListener("keyup", () => this.design.keyUp());
+    find(".pictured").addEventListener("change", (event) => {
+      this.background.open(event.target.files[0]);
+      event.target.value = "";
+    });
     find(".opened").addEventListener("change", (event) => {
       this.openFiles([...event.target.files]);
       event.target.value = "";
@@ -546,6 +552,9 @@ class Studio {
         { label: "New", act: () => this.open({ name: "mechanism.toml", text: EMPTY }) },
         { label: "Open a file …", act: () => this.find(".opened").click() },
         { label: "Templates …", act: () => this.chooseTemplate() },
+        this.background.image
+          ? { label: "Remove the background picture", act: () => this.background.remove() }
+          : { label: "Background picture …", act: () => this.find(".pictured").click() },
         "Save",
         { label: "Mechanism file (TOML)  Ctrl+S", act: () => saveFile(this) },
         { label: "FMU  Ctrl+E", act: () => exportFmu(this) },
@@ -577,6 +586,11 @@ class Studio {
   }
 
   async openFiles(files) {
+    const picture = files.find((file) => file.type.startsWith("image/"));
+    if (picture) {
+      this.background.open(picture);
+      return;
+    }
     const other = files.find((file) => /\.(asmt|linkage2|json|dxf|pmks)$/i.test(file.name));
     if (other) {
       const imported = await importFile(this, other);
@@ -608,7 +622,7 @@ class Studio {
       }
       const keys = add(form, "dl", { className: "keys-list" });
       const told = [
-        ...Object.values(TOOLS).map((tool) => [tool.key.toUpperCase(), tool.label]),
+        ...Object.values(TOOLS).flatMap((tool) => (tool.label ? [[tool.key.toUpperCase(), tool.label]] : [])),
         ["Shift", "without grid and directions"],
         ["digits", "the length of what is drawn"],
         ["Esc", "give up; then Select"],

@@ -67,6 +67,12 @@ export const TOOLS = {
     key: "v",
     hints: ["Click something to see its numbers; drag a pin to change the geometry"],
   },
+  scale: {
+    label: null,
+    hints: ["Click a point of the picture", "Click another point, whose distance you know"],
+    least: 2,
+    most: 2,
+  },
   link: {
     label: "Link",
     key: "l",
