@@ -57,11 +57,17 @@ pub(super) fn page(wasm: &[u8], beginning: &Beginning) -> String {
     fill(
         PAGE,
         &[
-            ("style", &format!("{STYLE}{}{OWN_STYLE}", super::live::STYLE)),
+            (
+                "style",
+                &format!("{STYLE}{}{OWN_STYLE}", super::live::STYLE),
+            ),
             ("live", &live),
             // A text in it may not end the script.
             ("data", &data.to_string().replace('<', "\\u003c")),
-            ("solver", &format!("{}\n{}", solver(wasm), licences(&all_licences))),
+            (
+                "solver",
+                &format!("{}\n{}", solver(wasm), licences(&all_licences)),
+            ),
             ("script", parts_script()),
             ("module", &module(scripts)),
         ],

@@ -99,7 +99,7 @@ impl Document {
         Ok(())
     }
 
-    /// Returns what a gesture would draw, with `scale`; nothing is changed.
+    /// Returns what a gesture would draw, with `scale` and without labels; nothing is changed.
     ///
     /// # Errors
     ///
@@ -107,7 +107,7 @@ impl Document {
     pub(super) fn preview(&self, gesture: &Value, scale: f64) -> Result<Value, Refusal> {
         let (_, drawn) = self.tried(gesture)?;
         let drawn = drawn.ok_or("this would leave a file with an error")?;
-        Ok(shown(&drawn, scale))
+        Ok(glimpse(&drawn, scale))
     }
 
     fn tried(&self, gesture: &Value) -> Result<(TomlText, Option<Drawn>), Refusal> {
@@ -204,18 +204,29 @@ impl Document {
 
 /// Describes what is drawn: status, sketch and picture.
 fn shown(drawn: &Drawn, scale: f64) -> Value {
-    let picture = drawn.picture(scale).map(|picture| {
-        let mut places = Vec::new();
-        picture.add_places(&drawn.q, &mut places);
-        let mut description = picture.description();
-        description["places"] = json!(places);
-        description
-    });
     json!({
-        "status": { "state": State::of(drawn).word(), "text": sentence(drawn) },
+        "status": status(drawn),
         "sketch": sketch(drawn),
-        "picture": picture,
+        "picture": picture(drawn, scale, true),
     })
+}
+
+/// Describes what is drawn while something is dragged: status and picture.
+fn glimpse(drawn: &Drawn, scale: f64) -> Value {
+    json!({ "status": status(drawn), "picture": picture(drawn, scale, false) })
+}
+
+fn status(drawn: &Drawn) -> Value {
+    json!({ "state": State::of(drawn).word(), "text": sentence(drawn) })
+}
+
+fn picture(drawn: &Drawn, scale: f64, labelled: bool) -> Option<Value> {
+    let picture = drawn.picture(scale, labelled)?;
+    let mut places = Vec::new();
+    picture.add_places(&drawn.q, &mut places);
+    let mut description = picture.description();
+    description["places"] = json!(places);
+    Some(description)
 }
 
 /// Returns the decimals of lengths of a gesture: as fine as the sheet shows.

@@ -78,14 +78,15 @@ impl Drawn {
         }
     }
 
-    /// Returns the picture at a scale \[units of the picture per metre\].
-    pub(super) fn picture(&self, scale: f64) -> Option<MovingPicture> {
+    /// Returns the picture at a scale \[units of the picture per metre\], with labels or in a glimpse.
+    pub(super) fn picture(&self, scale: f64, labelled: bool) -> Option<MovingPicture> {
         let mechanism = self.mechanism.as_ref()?;
         Some(MovingPicture::still(
             mechanism,
             &self.parameters,
             &self.q,
             scale,
+            labelled,
         ))
     }
 

@@ -34,7 +34,9 @@ impl Host {
     fn answer(&mut self, request: &str) -> Value {
         const OWN: [&str; 4] = ["export", "dxf", "gif", "import"];
         // The word comes first, so that no other request is read twice.
-        let word = request.strip_prefix("{\"do\":\"").and_then(|rest| rest.split('"').next());
+        let word = request
+            .strip_prefix("{\"do\":\"")
+            .and_then(|rest| rest.split('"').next());
         let Some(word) = word.filter(|word| OWN.contains(word)) else {
             return self.studio.answer(request);
         };
@@ -71,7 +73,9 @@ fn word<'a>(request: &'a Value, key: &str) -> &'a str {
 fn pairs(request: &Value, key: &str) -> Vec<(String, String)> {
     let list = request[key].as_array().map_or(&[][..], Vec::as_slice);
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    list.iter().map(|pair| (text(&pair[0]), text(&pair[1]))).collect()
+    list.iter()
+        .map(|pair| (text(&pair[0]), text(&pair[1])))
+        .collect()
 }
 
 fn unpacked(packed: &str) -> Result<Vec<u8>, String> {
@@ -85,7 +89,9 @@ fn mechanism(request: &Value) -> Result<(Source, Arc<Mechanism>), String> {
     match Mechanism::parse(&source) {
         Ok((mechanism, _)) => Ok((source, Arc::new(mechanism))),
         Err(problems) => {
-            let errors = problems.iter().filter(|problem| problem.severity == Severity::Error);
+            let errors = problems
+                .iter()
+                .filter(|problem| problem.severity == Severity::Error);
             let errors: Vec<String> = errors.map(|error| error.one_line(&source)).collect();
             Err(errors.join("\n"))
         }
@@ -93,12 +99,14 @@ fn mechanism(request: &Value) -> Result<(Source, Arc<Mechanism>), String> {
 }
 
 fn export(request: &Value, source: &Source, mechanism: &Arc<Mechanism>) -> Result<Value, String> {
-    let libraries = pairs(request, "libraries").into_iter().map(|(name, packed)| {
-        let platform = Platform::named(&name);
-        let platform = platform.ok_or_else(|| format!("no platform is called `{name}`"))?;
-        let content = unpacked(&packed)?.into();
-        Ok(RuntimeLibrary { platform, content })
-    });
+    let libraries = pairs(request, "libraries")
+        .into_iter()
+        .map(|(name, packed)| {
+            let platform = Platform::named(&name);
+            let platform = platform.ok_or_else(|| format!("no platform is called `{name}`"))?;
+            let content = unpacked(&packed)?.into();
+            Ok(RuntimeLibrary { platform, content })
+        });
     let libraries = libraries.collect::<Result<Vec<_>, String>>()?;
     let page = request["page"].as_str().map(unpacked).transpose()?;
     let fmi = word(request, "fmi");

@@ -20,6 +20,8 @@ TOOLS = {
 }
 SEQUENCES = 200
 GESTURES = 12
+# Sequences on one page after the other.
+TOGETHER = 20
 # A frame of a screen [ms].
 FRAME = 16
 
@@ -61,23 +63,32 @@ def gesture(sheet, hand):
         sheet.press("Enter")
 
 
-@pytest.mark.parametrize("seed", range(SEQUENCES))
-def test_undo_and_redo_of_a_random_drawing(sheet, seed):
+@pytest.mark.parametrize("first_seed", range(0, SEQUENCES, TOGETHER))
+def test_undo_and_redo_of_random_drawings(sheet, first_seed):
+    empty = sheet.text
+    for seed in range(first_seed, first_seed + TOGETHER):
+        sheet.page.evaluate(
+            "(text) => document.querySelector('.studio').studio.open({ name: 'mechanism.toml', text })", empty
+        )
+        draw_at_random(sheet, seed)
+
+
+def draw_at_random(sheet, seed):
     hand = random.Random(seed)
     first = sheet.text
     for _ in range(GESTURES):
         gesture(sheet, hand)
-    assert sheet.state in ("empty", "undriven", "driven", "free", "open", "rigid")
+    assert sheet.state in ("empty", "undriven", "driven", "free", "open", "rigid"), seed
     last = sheet.text
     undo, redo = sheet.page.locator(".bar .undo"), sheet.page.locator(".bar .redo")
     steps = 0
     while undo.is_enabled():
         undo.click()
         steps += 1
-    assert sheet.text == first
+    assert sheet.text == first, seed
     for _ in range(steps):
         redo.click()
-    assert sheet.text == last
+    assert sheet.text == last, seed
 
 
 def test_a_gesture_is_drawn_within_a_frame(sheet):

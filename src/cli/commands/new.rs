@@ -46,8 +46,13 @@ macro_rules! template {
 
 /// Returns name, text and tables of each mechanism that comes with biela; a table has the name of its
 /// file and its content.
-pub(super) fn templates()
--> impl Iterator<Item = (&'static str, &'static str, &'static [(&'static str, &'static str)])> {
+pub(super) fn templates() -> impl Iterator<
+    Item = (
+        &'static str,
+        &'static str,
+        &'static [(&'static str, &'static str)],
+    ),
+> {
     let templates = TEMPLATES.iter();
     templates.map(|template| (template.name, template.text, template.tables))
 }

@@ -128,17 +128,23 @@ impl Studio {
 /// Returns the file as the page opens it, and its version; one that does not exist is a new
 /// mechanism of its name.
 fn read(path: &Path) -> (Value, String) {
-    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let stem = path
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned());
     let stem = stem.filter(|stem| crate::mechanism::is_identifier(stem));
     let text = std::fs::read_to_string(path).unwrap_or_else(|_| {
         let name = stem.unwrap_or_else(|| "mechanism".to_owned());
         format!("format = 1\nname = \"{name}\"\n")
     });
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned());
     let source = Source::new("", &*text).in_folder(path.parent().unwrap_or(Path::new("")));
     let files = Mechanism::parse(&source).map(|(mechanism, _)| {
         let files = mechanism.table_files.into_iter();
-        files.map(|file| json!([file.name, file.text])).collect::<Vec<_>>()
+        files
+            .map(|file| json!([file.name, file.text]))
+            .collect::<Vec<_>>()
     });
     let file = json!({ "name": name, "text": text, "files": files.unwrap_or_default() });
     (file, version(path))
@@ -181,7 +187,10 @@ fn write_folder(parts: &Parts, folder: &Path) -> Result<(), Error> {
 fn shown_templates() -> Vec<Value> {
     let shown = templates().map(|(name, text, files)| {
         let source = Source::new("", text).with_files(
-            files.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect(),
+            files
+                .iter()
+                .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()))
+                .collect(),
         );
         let mechanism = Mechanism::parse(&source).ok();
         let description = mechanism.map(|(mechanism, _)| mechanism.description);

@@ -35,31 +35,33 @@ impl MovingPicture {
     ) -> Self {
         let motion = sweep(solver);
         let Pose { q, parameters, .. } = solver.pose();
-        Self::along(mechanism, parameters, q, &motion, further, scale)
-    }
-
-    /// Returns the picture of a mechanism at rest at the pose q, \[m, m, rad\] per body, at a scale
-    /// \[units of the picture per metre\].
-    #[must_use]
-    pub fn still(mechanism: &Mechanism, parameters: &[f64], q: &[f64], scale: f64) -> Self {
-        Self::along(mechanism, parameters, q, &[q.to_vec()], &[], Some(scale))
-    }
-
-    fn along(
-        mechanism: &Mechanism,
-        parameters: &[f64],
-        q: &[f64],
-        motion: &[Vec<f64>],
-        further: &[Vec<f64>],
-        scale: Option<f64>,
-    ) -> Self {
-        let scene = Scene::along(mechanism, parameters, q, motion, true);
+        let scene = Scene::along(mechanism, parameters, q, &motion, true);
         let poses: Vec<&[f64]> = std::iter::once(q)
-            .chain(motion.iter().map(Vec::as_slice))
-            .chain(further.iter().map(Vec::as_slice))
+            .chain(&motion)
+            .chain(further)
+            .map(Vec::as_slice)
             .collect();
         Self {
             stage: Stage::new(&scene, &poses, scale),
+            home: q.clone(),
+            scene,
+        }
+    }
+
+    /// Returns the picture of a mechanism at rest at the pose q, \[m, m, rad\] per body, at a scale
+    /// \[units of the picture per metre\]; without labels, whose places take the most time, if it is
+    /// not `labelled`.
+    #[must_use]
+    pub fn still(
+        mechanism: &Mechanism,
+        parameters: &[f64],
+        q: &[f64],
+        scale: f64,
+        labelled: bool,
+    ) -> Self {
+        let scene = Scene::along(mechanism, parameters, q, &[q.to_vec()], true);
+        Self {
+            stage: Stage::with_labels(&scene, &[q], Some(scale), labelled),
             home: q.to_vec(),
             scene,
         }

@@ -42,6 +42,16 @@ impl Stage {
     /// Returns the stage for a motion along poses, at whose first one the marks take their shape.
     /// Its scale, in units of the sheet per metre, is the one given, or fits the motion.
     pub(super) fn new(scene: &Scene, poses: &[&[f64]], scale: Option<f64>) -> Self {
+        Self::with_labels(scene, poses, scale, true)
+    }
+
+    /// Returns the stage, without labels if it is not `labelled`.
+    pub(super) fn with_labels(
+        scene: &Scene,
+        poses: &[&[f64]],
+        scale: Option<f64>,
+        labelled: bool,
+    ) -> Self {
         let every = poses.len().div_ceil(SAMPLES).max(1);
         let sampled = || poses.iter().step_by(every).copied();
         let q = poses.first().map_or(&[][..], |q| *q);
@@ -51,15 +61,13 @@ impl Stage {
             fitting(room, extent)
         });
 
-        let labelled = poses.len().div_ceil(LABEL_SAMPLES).max(1);
-        let further: Vec<&[f64]> = poses.iter().step_by(labelled).skip(1).copied().collect();
-        let (mut marks, labels) = Pen::draw(
-            &scene.symbols,
-            &scene.bodies,
-            q,
-            scale,
-            OtherPoses::Motion(&further),
-        );
+        let each = poses.len().div_ceil(LABEL_SAMPLES).max(1);
+        let further: Vec<&[f64]> = poses.iter().step_by(each).skip(1).copied().collect();
+        let others = match labelled {
+            true => OtherPoses::Motion(&further),
+            false => OtherPoses::Glimpse,
+        };
+        let (mut marks, labels) = Pen::draw(&scene.symbols, &scene.bodies, q, scale, others);
         marks.sort_by_key(|mark| mark.layer);
         let mut attachments = vec![Attachment::Ground];
         let mut lengths = Vec::new();

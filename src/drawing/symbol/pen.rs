@@ -77,6 +77,8 @@ pub(in crate::drawing) enum OtherPoses<'a> {
     Shown(&'a [Vec<f64>]),
     /// Poses along which the mechanism moves; labels keep their places over them.
     Motion(&'a [&'a [f64]]),
+    /// None, in a glimpse without labels.
+    Glimpse,
 }
 
 impl<'a> Pen<'a> {
@@ -100,7 +102,7 @@ impl<'a> Pen<'a> {
             q,
             scale,
             middle: on_sheet(middle, scale),
-            moving: matches!(others, OtherPoses::Motion(_)),
+            moving: !matches!(others, OtherPoses::Shown(_)),
             open_arrows: false,
             others,
             attachment: Attachment::Ground,
@@ -118,6 +120,7 @@ impl<'a> Pen<'a> {
     fn finish(mut self, bodies: &[String]) -> (Vec<Mark>, Vec<Placed>) {
         let motion = match self.others {
             OtherPoses::Motion(motion) => motion,
+            OtherPoses::Glimpse => return (self.marks, Vec::new()),
             OtherPoses::Shown(poses) => {
                 let shown: Vec<Mark> = (self.marks.iter().filter(|mark| shows_body(mark)))
                     .flat_map(|mark| poses.iter().filter_map(|q| self.faint(mark, q)))

@@ -11,7 +11,11 @@ const NEAR: f64 = 2e-3;
 /// Adds a slider on a guide of ground at an angle \[rad\]; at a marker it is pinned to that.
 pub(super) fn slider(editing: &mut Editing, target: &Target, angle: f64) -> Result<(), Refusal> {
     let direction = DIRECTIONS * (angle / DIRECTIONS).round();
-    let angle = if (angle - direction).abs() < NEAR { direction } else { angle };
+    let angle = if (angle - direction).abs() < NEAR {
+        direction
+    } else {
+        angle
+    };
     let other = match &target.onto {
         Onto::Sheet | Onto::Ground => None,
         _ => Some(editing.marker_at(target)?),
