@@ -5,4 +5,6 @@ mod common;
 
 mod cli;
 mod first_steps;
+mod served;
+mod studio;
 mod watch;

@@ -1,83 +1,13 @@
 //! `biela watch`: a page that follows its file.
 
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
-use std::net::TcpStream;
-use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 
-/// A running command, which ends with the test.
-struct Watched {
-    child: Child,
-    /// `127.0.0.1:port`.
-    address: String,
-    folder: tempfile::TempDir,
-}
-
-impl Drop for Watched {
-    fn drop(&mut self) {
-        // It may have ended by itself, which the test has told.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-impl Watched {
-    fn start(text: &str) -> Self {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = folder.path().join("watched.toml");
-        std::fs::write(&file, text).expect("it can be written");
-        let told = std::fs::File::create(folder.path().join("stderr")).expect("a file");
-        let mut child = Command::new(env!("CARGO_BIN_EXE_biela"))
-            .arg("watch")
-            .arg(file)
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::from(told))
-            .spawn()
-            .expect("the program runs");
-        let mut line = String::new();
-        let mut output = BufReader::new(child.stdout.take().expect("it is piped"));
-        output.read_line(&mut line).expect("it says where it is");
-        let address = line.trim().strip_prefix("http://").expect("an address");
-        Self {
-            child,
-            address: address.trim_end_matches('/').to_owned(),
-            folder,
-        }
-    }
-
-    /// Text on stderr so far.
-    fn told(&self) -> String {
-        std::fs::read_to_string(self.folder.path().join("stderr")).expect("it is text")
-    }
-
-    fn file(&self) -> PathBuf {
-        self.folder.path().join("watched.toml")
-    }
-
-    /// Status and body that answer a request.
-    fn ask(&self, request: &str) -> (String, String) {
-        let mut stream = TcpStream::connect(&self.address).expect("it listens");
-        stream.write_all(request.as_bytes()).expect("it listens");
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).expect("it answers");
-        let (head, body) = answer.split_once("\r\n\r\n").expect("a head and a body");
-        let status = head.lines().next().expect("a status");
-        (status.to_owned(), body.to_owned())
-    }
-
-    fn get(&self, path: &str) -> String {
-        let host = &self.address;
-        let (status, body) = self.ask(&format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n"));
-        assert_eq!(status, "HTTP/1.1 200 OK");
-        body
-    }
-}
+use crate::served::Served;
 
 #[test]
 fn the_page_follows_the_file() {
     let text = std::fs::read_to_string("mechanisms/pendulum.toml").unwrap();
-    let watched = Watched::start(&text);
+    let watched = Served::start(&["watch"], &text);
     assert!(watched.address.starts_with("127.0.0.1:"));
     let page = watched.get("/");
     assert!(page.contains("<h1>pendulum</h1>") && page.contains("class=\"film\""));
@@ -125,7 +55,7 @@ fn the_page_follows_the_file() {
 #[test]
 fn only_this_machine_is_answered_and_only_what_there_is() {
     // A file that is broken from the start has no picture.
-    let watched = Watched::start("format = 1");
+    let watched = Served::start(&["watch"], "format = 1");
     let page = watched.get("/");
     assert!(page.contains("class=\"error\"") && !page.contains("class=\"film\""));
     let host = watched.address.clone();

@@ -33,6 +33,9 @@ pub(in crate::cli) struct Studio {
     /// index.html.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["file", "port"])]
     write: Option<PathBuf>,
+    /// The studio's solver, compiled to WebAssembly [default: the one installed with this program].
+    #[arg(long, value_name = "WASM")]
+    solver: Option<PathBuf>,
     /// Folder of runtime libraries, one subfolder per platform [default: those installed with this
     /// program].
     #[arg(long, value_name = "FOLDER")]
@@ -55,8 +58,11 @@ struct Parts {
 }
 
 impl Parts {
-    fn find(folder: Option<&Path>) -> Result<Self, Error> {
-        let solver = page_solver::demand(Solver::Studio)?;
+    fn find(solver: Option<&Path>, folder: Option<&Path>) -> Result<Self, Error> {
+        let solver = match solver {
+            Some(file) => page_solver::read(file)?,
+            None => page_solver::demand(Solver::Studio)?,
+        };
         let libraries = runtime::find(folder)?.into_iter().map(|found| {
             let library = found.library;
             (library.platform.name.to_owned(), library.content)
@@ -90,10 +96,6 @@ impl Parts {
 
 impl Studio {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
-        let parts = Parts::find(self.runtime.as_deref())?;
-        if let Some(folder) = &self.write {
-            return write_folder(&parts, folder);
-        }
         if let Some(file) = &self.file
             && file.extension().is_none_or(|extension| extension != "toml")
         {
@@ -101,6 +103,10 @@ impl Studio {
                 "`{}` is no name of a mechanism file: it must end in .toml",
                 file.display()
             )));
+        }
+        let parts = Parts::find(self.solver.as_deref(), self.runtime.as_deref())?;
+        if let Some(folder) = &self.write {
+            return write_folder(&parts, folder);
         }
         let server = Server::new(self.port)?;
         let _ = print(&format!("{}\n", server.address()));

@@ -17,6 +17,7 @@ fn help_goes_to_stdout() {
         &["tolerance", "--help"],
         &["watch", "--help"],
         &["page", "--help"],
+        &["studio", "--help"],
         &["report", "-h"],
         &["convert", "-h"],
         &["schema", "--help"],

@@ -1,4 +1,4 @@
-//! The commands as a user types them; `watch` has a test of its own.
+//! The commands as a user types them; `watch` and `studio` have tests of their own.
 
 mod check;
 mod draw;
