@@ -11,7 +11,7 @@ mod input;
 mod new;
 mod overwriting;
 mod pictures_of_runs;
-mod program;
+pub(crate) mod program;
 mod range;
 mod report;
 mod run;
