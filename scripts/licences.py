@@ -35,6 +35,12 @@ NOTICES = {
         "The solver in this page is biela",
         "this page",
     ),
+    ROOT / "studio" / "licenses.txt": (
+        "biela-studio",
+        ("wasm32-unknown-unknown",),
+        "The solver in this page is biela",
+        "this page",
+    ),
 }
 # Licences in the order in which one is chosen where a crate leaves the choice, each with words of
 # its text and of the names of its files.
@@ -44,6 +50,7 @@ CHOICE = (
     ("BSD-3-Clause", "Redistribution and use in source and binary forms", ("BSD",)),
     ("BSD-2-Clause", "Redistribution and use in source and binary forms", ("BSD",)),
     ("Apache-2.0", "Apache License", ("APACHE",)),
+    ("Unicode-3.0", "UNICODE LICENSE V3", ("UNICODE",)),
 )
 LINE = "-" * 80
 
@@ -111,18 +118,24 @@ def text_of(package):
     offered = alternatives(package["license"] or "")
     folder = Path(package["manifest_path"]).parent
     files = sorted(f for f in folder.iterdir() if re.match(r"(?i)(licen[cs]e|copying|unlicense)", f.name))
+    order = [licence for licence, *_ in CHOICE]
+    usable = [licences for licences in offered if licences <= set(order)]
+    if not usable:
+        sys.exit(f"{package['name']}: no known licence in `{package['license']}`")
+    # One licence rather than several; of one, in the order of choice, one whose text comes along.
+    texts = {}
     for licence, words, names in CHOICE:
-        if {licence} not in offered:
-            continue
         for file in sorted(files, key=lambda f: not any(n in f.name.upper() for n in names)):
             text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
             if words in text:
-                return licence, "\n".join(line.rstrip() for line in text.strip().splitlines())
-    chosen = next((licence for licence, *_ in CHOICE if {licence} in offered), None)
-    if chosen is None:
-        sys.exit(f"{package['name']}: no known licence in `{package['license']}`")
+                texts[licence] = "\n".join(line.rstrip() for line in text.strip().splitlines())
+                break
+    chosen = min(usable, key=lambda s: (len(s), not s <= texts.keys(), max(map(order.index, s))))
+    chosen = sorted(chosen, key=order.index)
     authors = ", ".join(re.sub(r" <[^>]*>", "", a) for a in package["authors"])
-    return chosen, f"{chosen}, by {authors or 'the authors of ' + package['name']}"
+    authors = authors or "the authors of " + package["name"]
+    told = [texts.get(licence, f"{licence}, by {authors}") for licence in chosen]
+    return " and ".join(chosen), "\n\n".join(told)
 
 
 def notices(known, package, targets, what, place):

@@ -45,7 +45,8 @@ def content(program: Path) -> dict[str, Path]:
     command = ["bash", ROOT / "scripts" / "runtimes.sh", "--current"]
     current = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     files |= {f"lib/biela/{library}": RUNTIMES / library for library in current.split()}
-    files["lib/biela/page.wasm"] = RUNTIMES / "page.wasm"
+    for solver in ("page.wasm", "studio.wasm"):
+        files[f"lib/biela/{solver}"] = RUNTIMES / solver
     for pattern in ["mechanisms/*.toml", "mechanisms/*.csv", "mechanisms/README.md"]:
         files |= {f"share/biela/{path.relative_to(ROOT)}": path for path in ROOT.glob(pattern)}
     for folder in ["docs", "mechanisms/pictures"]:

@@ -26,12 +26,14 @@ for library in $libraries; do
     mkdir -p "$BIELA_RUNTIMES/${library%/*}"
     cp "target/runtimes/$library" "$BIELA_RUNTIMES/$library"
 done
-solver=$(bash scripts/page.sh --current)
-if [ -n "$solver" ]; then
-    cp "$solver" "$BIELA_RUNTIMES/page.wasm"
-else
-    say "without the solver for pages: run \`make page\` first"
-fi
+for name in page studio; do
+    solver=$(bash scripts/page.sh "$name" --current)
+    if [ -n "$solver" ]; then
+        cp "$solver" "$BIELA_RUNTIMES/$name.wasm"
+    else
+        say "without the solver of the $name: run \`make $name\` first"
+    fi
+done
 if [ $# -eq 0 ]; then
     set -- linux64 win64 darwin64 aarch64-linux
 fi

@@ -14,7 +14,7 @@ use crate::mechanism::{Mechanism, Source};
 
 const MAIN: &str = include_str!("../../page/scripts/live.html");
 /// The licences of what is inside the solver.
-pub(super) const LICENCES: &str = include_str!("../../page/licenses.txt");
+const LICENCES: &str = include_str!("../../page/licenses.txt");
 const SHARED: &str = include_str!("../../page/scripts/shared.js");
 /// Style of the part.
 pub(super) const STYLE: &str = include_str!("../../page/scripts/live.css");

@@ -2,13 +2,14 @@
 
 use serde_json::{Value, json};
 
-use super::live::{LICENCES, SCRIPTS, licences, module, packed, solver};
+use super::live::{SCRIPTS, licences, module, packed, solver};
 use crate::drawing::animation::{STYLE, fill, parts_script};
 use crate::mechanism::Mechanism;
 
 const PAGE: &str = include_str!("../../studio/scripts/studio.html");
 const OWN_STYLE: &str = include_str!("../../studio/scripts/studio.css");
-/// The licences of what is inside the text editor.
+/// The licences of what is inside the solver, and inside the text editor.
+const LICENCES: &str = include_str!("../../studio/licenses.txt");
 const EDITOR_LICENCES: &str = include_str!("../../studio/editor/licenses.txt");
 const EDITOR: &str = include_str!("../../studio/editor/bundle.js");
 const LIVE: &str = include_str!("../../page/scripts/live.html");

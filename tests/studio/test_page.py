@@ -1,0 +1,235 @@
+"""The studio's page: text and drawing as one, files and links, other sizes, touch."""
+
+import json
+import subprocess
+import zipfile
+
+import pytest
+from drawing import Drawing
+from harness import ROOT, program
+
+
+def crank(sheet):
+    """Draws a crank on ground with a rod."""
+    sheet.tool("link")
+    sheet.click((0, 0), ground=True)
+    sheet.click((0.05, 0.1), (0.05, 0.1), (0.3, 0.1))
+
+
+def test_the_fmu_has_the_bytes_of_the_program(sheet, tmp_path):
+    crank(sheet)
+    sheet.tool("slider")
+    sheet.click((0.3, 0.1), (0.4, 0.1))
+    sheet.tool("driver")
+    sheet.click((0, 0))
+    for fmi in ("2", "3"):
+        fmu = sheet.export(fmi)
+        file = tmp_path / "mechanism.toml"
+        file.write_text(sheet.text, encoding="utf-8")
+        platforms = sheet.page.evaluate("() => document.querySelector('.studio').studio.parts.filter((p) => p !== 'page')")
+        runtimes = ROOT / "target" / "runtimes"
+        built = all(list(runtimes.glob(f"{platform}/biela.*")) for platform in platforms)
+        command = [program(), "export", file, "-o", tmp_path / "own.fmu", "--fmi", fmi]
+        subprocess.run([*command, *(["--runtime", runtimes] if built else [])], check=True, capture_output=True)
+        own = (tmp_path / "own.fmu").read_bytes()
+        assert zipfile.ZipFile(fmu).namelist() == zipfile.ZipFile(tmp_path / "own.fmu").namelist()
+        assert fmu.read_bytes() == own
+
+
+def test_typing_moves_the_drawing_and_undo_takes_it_back(sheet):
+    crank(sheet)
+    before = sheet.text
+    sheet.page.locator(".editor .cm-line", has_text="link_2").first.click()
+    sheet.page.keyboard.press("ArrowDown")
+    sheet.page.keyboard.press("End")
+    sheet.page.keyboard.press("Enter")
+    sheet.page.keyboard.type("mass = 2")
+    assert "mass = 2" in sheet.text
+    mass = sheet.page.evaluate("() => document.querySelector('.studio').studio.view.sketch.bodies[1].mass")
+    assert mass == 2
+    # What is typed in one go is one step.
+    sheet.page.keyboard.press("Control+z")
+    assert sheet.text == before
+
+
+def test_an_error_keeps_the_drawing_and_names_the_line(sheet):
+    crank(sheet)
+    sheet.page.locator(".editor .cm-content").click()
+    sheet.page.keyboard.press("Control+End")
+    sheet.page.keyboard.type("[oops")
+    assert sheet.state == "broken"
+    assert sheet.status.startswith("Line ")
+    assert sheet.page.locator(".studio.stale .drawing svg").count() == 1
+    sheet.tool("pivot")
+    sheet.click((0.3, 0.1))
+    assert "mend it first" in sheet.said
+
+
+def test_a_link_holds_the_mechanism(sheet, chromium, folder, tmp_path):
+    crank(sheet)
+    sheet.page.evaluate(
+        """() => Object.defineProperty(navigator, "clipboard", {
+          value: { writeText: async (text) => { window.copied = text; } },
+        })"""
+    )
+    sheet.page.locator(".file-menu").click()
+    sheet.page.get_by_text("Copy a link").click()
+    link = sheet.page.wait_for_function("() => window.copied").json_value()
+    context = chromium.new_context()
+    page = context.new_page()
+    page.goto(link)
+    page.wait_for_selector(".studio.ready")
+    assert page.evaluate("() => document.querySelector('.studio').studio.text") == sheet.text
+    context.close()
+
+
+def test_what_was_drawn_last_is_there_again(sheet):
+    crank(sheet)
+    text = sheet.text
+    sheet.page.wait_for_function("() => localStorage.getItem('biela.studio')?.includes('link_2')")
+    sheet.page.reload()
+    sheet.page.wait_for_selector(".studio.ready")
+    assert sheet.text == text
+
+
+def test_a_template_is_opened_and_moves(sheet):
+    sheet.page.locator(".file-menu").click()
+    sheet.page.get_by_text("Templates …").click()
+    sheet.page.locator(".templates button").filter(has_text="slider_crank").first.click()
+    sheet.page.wait_for_selector(".studio[data-state=driven]")
+    sheet.page.locator(".modes button[value=motion]").click()
+    live = sheet.page.locator(".live.ready")
+    live.locator(".driver-rows input[type=number]").fill("90")
+    live.locator(".driver-rows input[type=number]").press("Enter")
+    before = sheet.text
+    sheet.page.locator(".start-here").click()
+    assert sheet.text != before
+    assert '"90*deg"' in sheet.text
+    sheet.page.locator(".bar .undo").click()
+    assert sheet.text == before
+
+
+def test_what_nothing_drives_is_moved_by_hand(sheet):
+    crank(sheet)
+    assert "2 degrees of freedom" in sheet.status
+    sheet.page.locator(".modes button[value=motion]").click()
+    reached = sheet.page.evaluate(
+        """() => {
+          const { live } = document.querySelector(".studio").studio;
+          const { scale } = live.picture.parts;
+          const { grip } = live.ask({ do: "grab", body: 1, at: [0.3 * scale, -0.1 * scale] });
+          const answer = live.ask({ do: "drag", body: 1, grip, at: [0.2 * scale, -0.05 * scale] });
+          return answer.outcome;
+        }"""
+    )
+    assert reached == "reached"
+    shown = sheet.page.evaluate("() => document.querySelector('.studio').studio.live.page.drivers.length")
+    assert shown == 0
+
+
+def test_a_file_of_another_program_is_dropped_in(sheet):
+    samples = sorted((ROOT / "tests" / "exchange" / "samples").rglob("*.linkage2"))
+    sheet.page.locator(".opened").set_input_files(samples[0])
+    sheet.page.wait_for_function("() => document.querySelector('.studio').studio.view.sketch.bodies.length > 0")
+    assert sheet.text.startswith("# From ")
+
+
+@pytest.mark.parametrize(
+    ("entry", "start"),
+    [
+        ("Mechanism file", b"format = 1"),
+        ("Picture (SVG)", b"<svg"),
+        ("Picture (PNG)", b"\x89PNG"),
+        ("Drawing for the workshop", b"  0\n"),
+        ("Moving picture", b"GIF89a"),
+    ],
+)
+def test_what_is_saved_begins_as_it_should(sheet, tmp_path, entry, start):
+    crank(sheet)
+    sheet.tool("slider")
+    sheet.click((0.3, 0.1), (0.4, 0.1))
+    sheet.tool("driver")
+    sheet.click((0, 0))
+    sheet.page.locator(".file-menu").click()
+    with sheet.page.expect_download() as waiting:
+        sheet.page.get_by_role("menuitem", name=entry).click()
+    waiting.value.save_as(tmp_path / "saved")
+    content = (tmp_path / "saved").read_bytes()
+    assert content.startswith(start)
+    assert len(content) > 300
+
+
+def test_a_length_clicked_becomes_a_parameter(sheet):
+    crank(sheet)
+    sheet.tool("select")
+    sheet.click((0.175, 0.1))
+    sheet.page.locator(".marks .dimension").first.dispatch_event("pointerdown")
+    sheet.page.locator("dialog input").nth(1).fill("rod_length")
+    sheet.page.locator("dialog button.primary").click()
+    assert sheet.file["parameters"]["rod_length"]["value"] == pytest.approx(0.25)
+    assert "rod_length" in json.dumps(sheet.file["bodies"]["link_2"]["markers"])
+    # Dragging the pin asks once whether the parameter shall change.
+    sheet.drag((0.3, 0.1), (0.4, 0.1))
+    sheet.page.locator("dialog button.primary").click()
+    assert sheet.file["parameters"]["rod_length"]["value"] == pytest.approx(0.35)
+    sheet.drag((0.4, 0.1), (0.35, 0.1))
+    assert sheet.page.locator("dialog").count() == 0
+    assert sheet.file["parameters"]["rod_length"]["value"] == pytest.approx(0.3)
+
+
+def test_a_free_end_dropped_on_a_pin_is_joined(sheet):
+    crank(sheet)
+    sheet.tool("link")
+    sheet.click((0.4, 0), ground=True)
+    sheet.click((0.5, 0.1))
+    sheet.tool("select")
+    sheet.drag((0.5, 0.1), (0.3, 0.1))
+    assert "1 degree of freedom" in sheet.status, sheet.text
+
+
+def test_the_menu_says_why_something_cannot_be_done(sheet):
+    crank(sheet)
+    u, v = sheet.place((0, 0))
+    sheet.page.mouse.click(u, v, button="right")
+    menu = sheet.page.locator(".menu:not([hidden])")
+    assert menu.locator("button:disabled small").count() >= 1
+    sheet.page.keyboard.press("Escape")
+    assert menu.count() == 0
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (1280, 720), (390, 844)])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_all_fits_the_screen(chromium, folder, tmp_path, size, scheme):
+    context = chromium.new_context(
+        viewport={"width": size[0], "height": size[1]}, color_scheme=scheme, has_touch=size[0] < 500
+    )
+    drawing = Drawing(context.new_page(), folder / "index.html", tmp_path)
+    crank(drawing)
+    assert drawing.page.evaluate("() => document.documentElement.scrollWidth <= innerWidth")
+    assert drawing.page.evaluate("() => document.documentElement.scrollHeight <= innerHeight")
+    for button in drawing.page.locator(".bar button:visible").all():
+        box = button.bounding_box()
+        assert box["x"] >= 0 and box["x"] + box["width"] <= size[0]
+    context.close()
+    assert drawing.errors == []
+
+
+def test_fingers_draw_and_pinch(chromium, folder, tmp_path):
+    context = chromium.new_context(viewport={"width": 390, "height": 844}, has_touch=True)
+    page = context.new_page()
+    drawing = Drawing(page, folder / "index.html", tmp_path)
+    page.locator(".tools button[value=link]").tap()
+    for at in ((0.1, 0.1), (0.2, 0.2)):
+        u, v = drawing.place(at)
+        page.touchscreen.tap(u, v)
+    assert len(drawing.file["bodies"]) == 1
+    scale = "() => document.querySelector('.studio').studio.sheet.scale"
+    before = page.evaluate(scale)
+    session = context.new_cdp_session(page)
+    for kind, apart in (("touchStart", 40), ("touchMove", 80), ("touchMove", 120)):
+        points = [{"x": 195 - apart, "y": 400, "id": 1}, {"x": 195 + apart, "y": 400, "id": 2}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    assert page.evaluate(scale) == pytest.approx(3 * before, rel=0.1)
+    context.close()
+    assert drawing.errors == []
