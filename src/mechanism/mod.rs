@@ -65,11 +65,11 @@ pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub(crate) use expression::Values;
-#[cfg(feature = "page")]
-pub(crate) use expression::constant;
 #[cfg(feature = "cli")]
 pub(crate) use expression::is_taken;
 pub use expression::{Expression, ExpressionError, LinearForm, Variable};
+#[cfg(feature = "page")]
+pub(crate) use expression::{constant, names_in};
 pub use force::{
     ElasticStop, Force, ForceComponent, ForceLaw, Load, PassiveCause, RegularisedFriction, Spring,
 };

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::drawn::Drawn;
-use super::gesture::{self, Refusal};
+use super::gesture::{self, Editing, Refusal};
 use super::sketch::sketch;
 use super::status::{State, sentence};
 use super::text::TomlText;
@@ -86,10 +86,12 @@ impl Document {
     /// The reason why it cannot be done.
     pub(super) fn gesture(&mut self, gesture: &Value) -> Result<(), Refusal> {
         let (text, drawn) = self.tried(gesture)?;
-        let drawn = drawn.ok_or("this would leave a file with an error")?;
-        let text = match gesture["kind"].as_str() {
-            Some("shift") => gesture::settled(text, &drawn, decimals(gesture)),
-            _ => text,
+        let text = if gesture::moves(gesture) {
+            let mut editing = Editing::new(text, &drawn, &self.files, decimals(gesture));
+            gesture::settle(&mut editing);
+            editing.text
+        } else {
+            text
         };
         if text.as_str() != self.text {
             self.keep();
@@ -106,17 +108,39 @@ impl Document {
     /// The reason why it cannot be done.
     pub(super) fn preview(&self, gesture: &Value, scale: f64) -> Result<Value, Refusal> {
         let (_, drawn) = self.tried(gesture)?;
-        let drawn = drawn.ok_or("this would leave a file with an error")?;
         Ok(glimpse(&drawn, scale))
     }
 
-    fn tried(&self, gesture: &Value) -> Result<(TomlText, Option<Drawn>), Refusal> {
+    /// Begins to change the text.
+    ///
+    /// # Errors
+    ///
+    /// The text has an error.
+    pub(super) fn editing(&self, decimals: usize) -> Result<Editing<'_>, Refusal> {
         let Some(drawn) = self.drawn.as_ref().filter(|_| !self.is_stale) else {
             return Err("the text has an error: mend it first".into());
         };
         let text = TomlText::new(&*self.text).map_err(|error| error.to_string())?;
-        let text = gesture::act(gesture, text, drawn, decimals(gesture))?;
-        let (drawn, _) = Drawn::read(&self.source(text.as_str()));
+        Ok(Editing::new(text, drawn, &self.files, decimals))
+    }
+
+    fn tried(&self, gesture: &Value) -> Result<(TomlText, Drawn), Refusal> {
+        let mut editing = self.editing(decimals(gesture))?;
+        gesture::act(gesture, &mut editing)?;
+        let text = editing.text;
+        let (drawn, problems) = Drawn::read(&self.source(text.as_str()));
+        let drawn = drawn.ok_or_else(|| {
+            let error = problems.iter().find(|p| p.severity == Severity::Error);
+            Refusal::Because(match error {
+                Some(Diagnostic {
+                    message,
+                    help: Some(help),
+                    ..
+                }) => format!("{message}; {help}"),
+                Some(Diagnostic { message, .. }) => message.clone(),
+                None => "this would leave a file with an error".to_owned(),
+            })
+        })?;
         Ok((text, drawn))
     }
 

@@ -90,11 +90,6 @@ impl Drawn {
         ))
     }
 
-    /// Returns the number of bodies.
-    pub(super) fn bodies(&self) -> usize {
-        self.q.len() / 3
-    }
-
     /// Returns the frame of a body, that of ground for `None`.
     pub(super) fn frame(&self, body: Option<BodyId>) -> [f64; 3] {
         body.map_or([0.0; 3], |body| {

@@ -18,9 +18,9 @@ use crate::page;
 ///
 /// Each may have the `scale` of the picture \[units per metre\]. A view has `text`, `problems`,
 /// `is_stale` (the drawing is of an earlier text), `status`, `sketch`, `picture`, `can_undo`,
-/// `can_redo`; one that is only shown has status and
-/// picture. A refusal has `message`, or
-/// asks by `parameter`, `formula` and `value`. All other requests are those of
+/// `can_redo`; one that is only shown has status and picture. A refusal has `message`, or asks by
+/// `parameter`, `formula` and `value`. All other
+/// requests are those of
 /// [`page::Host`].
 #[derive(Default)]
 pub struct Host {

@@ -8,6 +8,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `text` | the text of a file, changed in place |
+//! | `places`, `reference` | its keys and texts, and the names in them |
 //! | `names`, `number` | new names, and numbers as a person writes them |
 //! | `drawn` | the mechanism where its file starts it |
 //! | `gesture` | gestures, one file each |
@@ -22,6 +23,8 @@ mod gesture;
 mod host;
 mod names;
 mod number;
+mod places;
+mod reference;
 mod sketch;
 mod status;
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::text::TomlText;
 
 /// Sections whose keys share one name space.
-const NAMED: [&str; 9] = [
+pub(super) const NAMED: [&str; 10] = [
     "parameters",
     "bodies",
     "joints",
@@ -15,6 +15,7 @@ const NAMED: [&str; 9] = [
     "measures",
     "forces",
     "stops",
+    "friction",
 ];
 
 /// The names that a file gives.

@@ -1,4 +1,4 @@
-//! What is drawn, for the pointer to find: points, bars, joints, drivers, and their names.
+//! Sketch of a drawing, for the pointer to find: points, bars, joints, drivers, and their names.
 
 use serde_json::{Value, json};
 

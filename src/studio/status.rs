@@ -1,4 +1,4 @@
-//! What a drawing lacks until it is a mechanism that moves, in plain words.
+//! State of a drawing, and its lack until it is a mechanism that moves, in plain words.
 
 use super::drawn::Drawn;
 use crate::mechanism::Driver;

@@ -1,9 +1,13 @@
 //! The text of a mechanism file, changed as a person would: each change replaces, adds or removes a
 //! few letters, and all others stay.
 
+use std::cell::OnceCell;
 use std::ops::Range;
+use std::rc::Rc;
 
 use toml_edit::{Document, Item, Table, TomlError};
+
+use super::places::Places;
 
 /// The sections of a mechanism file in the order in which new ones are put.
 const SECTIONS: [&str; 13] = [
@@ -25,9 +29,11 @@ const SECTIONS: [&str; 13] = [
 const LINE: usize = 100;
 
 /// The text of a file that is TOML.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub(super) struct TomlText {
     text: String,
+    /// The parsed text, until it changes.
+    document: OnceCell<Rc<Document<String>>>,
 }
 
 /// An item of the file: where its key and its value stand.
@@ -46,8 +52,11 @@ impl TomlText {
     /// It is no TOML.
     pub(super) fn new(text: impl Into<String>) -> Result<Self, TomlError> {
         let text = text.into();
-        Document::parse(&*text)?;
-        Ok(Self { text })
+        let document = Document::parse(text.clone())?;
+        Ok(Self {
+            text,
+            document: Rc::new(document).into(),
+        })
     }
 
     /// Returns the text.
@@ -59,6 +68,18 @@ impl TomlText {
     pub(super) fn get(&self, path: &[&str]) -> Option<&str> {
         let place = self.find(path)?.value;
         self.text.get(place)
+    }
+
+    /// Writes an item on one line: a table in braces.
+    pub(super) fn value(&self, path: &[&str]) -> String {
+        if let Some(value) = self.get(path) {
+            return value.to_owned();
+        }
+        let entries = self.keys(path).into_iter().map(|key| {
+            let value = self.value(&[path, &[&*key]].concat());
+            format!("{key} = {value}")
+        });
+        format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
     }
 
     /// Returns the place of a value.
@@ -81,6 +102,12 @@ impl TomlText {
         item_at(document.as_table(), path).is_some()
     }
 
+    /// Returns whether the item at a path is a table, in braces or not.
+    pub(super) fn has_keys(&self, path: &[&str]) -> bool {
+        let document = self.document();
+        item_at(document.as_table(), path).is_some_and(Item::is_table_like)
+    }
+
     /// Returns the keys of a table, in their order; none of what is no table.
     pub(super) fn keys(&self, path: &[&str]) -> Vec<String> {
         let document = self.document();
@@ -93,18 +120,22 @@ impl TomlText {
         keys.map(|(key, _)| key.to_owned()).collect()
     }
 
-    /// Returns the texts of all strings in the file with their paths: of an entry of a list, that of
-    /// the list.
-    pub(super) fn strings(&self) -> Vec<(Vec<String>, Range<usize>)> {
-        let document = self.document();
-        let mut found = Vec::new();
-        strings_in(document.as_item(), &mut Vec::new(), &mut found);
-        found
+    /// Returns all keys and texts with their places.
+    pub(super) fn places(&self) -> Places {
+        Places::of(&self.text)
     }
 
     /// Replaces a part of the text.
     pub(super) fn replace(&mut self, place: Range<usize>, with: &str) {
         self.text.replace_range(place, with);
+        self.document = OnceCell::new();
+    }
+
+    /// Replaces parts of the text, which are in order and apart.
+    pub(super) fn replace_all(&mut self, parts: &[(Range<usize>, String)]) {
+        for (place, with) in parts.iter().rev() {
+            self.replace(place.clone(), with);
+        }
     }
 
     /// Gives an item a value, which is TOML: the present one is replaced, a new one is added behind
@@ -123,12 +154,13 @@ impl TomlText {
             _ => item_at(document.as_table(), owner),
         };
         match owner_item {
-            Some(Item::Value(braces)) => {
+            Some(Item::Value(toml_edit::Value::InlineTable(braces))) => {
                 if let Some(place) = braces.span() {
-                    let is_empty = braces.as_inline_table().is_none_or(|t| t.is_empty());
-                    self.add_in_braces(place, name, value, is_empty);
+                    self.add_in_braces(place, name, value, braces.is_empty());
                 }
             }
+            // A number or a text has no entries.
+            Some(Item::Value(_)) => {}
             Some(Item::Table(table)) if !(table.is_implicit() && table.span().is_none()) => {
                 let line = self.line_after(table, owner.is_empty());
                 self.add_line(line, name, value);
@@ -159,7 +191,7 @@ impl TomlText {
         let gap = if end == 0 { "" } else { "\n" };
         let block = format!("{gap}\n[{header}]\n{lines}");
         let block = if end == 0 { block.trim_start() } else { &block };
-        self.text.insert_str(end, block);
+        self.replace(end..end, block);
         self.end_with_newline();
     }
 
@@ -180,7 +212,9 @@ impl TomlText {
         }
         cuts.sort_by_key(|cut| cut.start);
         for cut in cuts.into_iter().rev() {
-            self.text.replace_range(cut, "");
+            let at = cut.start;
+            self.replace(cut, "");
+            self.close_gap(at);
         }
         if let Some((_, owner)) = path.split_last()
             && !owner.is_empty()
@@ -189,29 +223,29 @@ impl TomlText {
         {
             self.remove(owner);
         }
-        self.close_gaps();
     }
 
-    /// Gives an item another key; its place and all around it stay.
-    pub(super) fn rename(&mut self, path: &[&str], name: &str) {
-        let document = self.document();
-        let mut keys = Vec::new();
-        keys_named(document.as_table(), path, &mut keys);
-        // A table may be spelled in several headers: `[bodies.arm]`, `[bodies.arm.markers]`.
-        let mut places = keys;
-        places.extend(self.header_keys(path));
-        places.sort_by_key(|place: &Range<usize>| place.start);
-        places.dedup();
-        for place in places.into_iter().rev() {
-            self.replace(place, name);
-        }
+    /// Removes an element of a list.
+    pub(super) fn remove_element(&mut self, path: &[&str], index: usize) {
+        let [before, own, after] = [index.checked_sub(1), Some(index), index.checked_add(1)]
+            .map(|index| self.element(path, index?));
+        let cut = match (before, own, after) {
+            (_, Some(own), Some(after)) => own.start..after.start,
+            (Some(before), Some(own), None) => before.end..own.end,
+            (None, Some(own), None) => own,
+            (_, None, _) => return,
+        };
+        self.replace(cut, "");
     }
 
     // -- places --------------------------------------------------------------------------------
 
-    fn document(&self) -> Document<String> {
-        Document::parse(self.text.clone())
-            .expect("it was TOML when it was taken, and changes keep it so")
+    fn document(&self) -> Rc<Document<String>> {
+        let document = self.document.get_or_init(|| {
+            let document = Document::parse(self.text.clone());
+            Rc::new(document.expect("it was TOML when it was taken, and changes keep it so"))
+        });
+        Rc::clone(document)
     }
 
     fn find(&self, path: &[&str]) -> Option<Found> {
@@ -228,34 +262,6 @@ impl TomlText {
             value: item.as_value()?.span()?,
             in_braces: owner.is_value(),
         })
-    }
-
-    /// Returns the places of a name in the headers of tables that begin with a path.
-    fn header_keys(&self, path: &[&str]) -> Vec<Range<usize>> {
-        let mut found = Vec::new();
-        let mut offset = 0;
-        for line in self.text.split_inclusive('\n') {
-            let trimmed = line.trim_start();
-            if trimmed.starts_with('[') && !trimmed.starts_with("[[") {
-                let start = offset + line.len() - trimmed.len() + 1;
-                let end = trimmed.find(']').map_or(start, |end| start - 1 + end);
-                let mut at = start;
-                for (index, part) in self.text[start..end].split('.').enumerate() {
-                    let name = part.trim();
-                    let fits = path.get(index).is_some_and(|wanted| *wanted == name);
-                    if !fits {
-                        break;
-                    }
-                    if index + 1 == path.len() {
-                        let from = at + part.len() - part.trim_start().len();
-                        found.push(from..from + name.len());
-                    }
-                    at += part.len() + 1;
-                }
-            }
-            offset += line.len();
-        }
-        found
     }
 
     /// Returns the end of the last line of a table's own entries.
@@ -350,35 +356,49 @@ impl TomlText {
         self.replace(end..braces.end - 1, &entry);
     }
 
-    /// Adds an entry behind a line, aligned as that line is.
+    /// Adds an entry behind a line, aligned with the entries above if they are aligned.
     fn add_line(&mut self, end: usize, name: &str, value: &str) {
-        let start = self.text[..end].rfind('\n').map_or(0, |at| at + 1);
-        let line = &self.text[start..end];
-        let aligned = line
-            .find(" =")
-            .filter(|at| !line.starts_with('[') && !line[..*at].contains(['"', '#']))
-            .map_or(name.len(), |at| at.max(name.len()));
+        let above = self.text[..end].rsplit('\n').take(2).map(column);
+        let above: Vec<Option<(usize, bool)>> = above.collect();
+        let aligned = match above[..] {
+            [Some((column, _)), Some((next, _))] if column == next => column,
+            [Some((column, true)), ..] => column,
+            _ => 0,
+        };
+        let aligned = aligned.max(name.len());
         let break_before = if end == 0 { "" } else { "\n" };
         let line = format!("{break_before}{name:aligned$} = {value}");
-        self.text.insert_str(end, &line);
+        self.replace(end..end, &line);
         self.end_with_newline();
     }
 
     fn end_with_newline(&mut self) {
         if !self.text.ends_with('\n') {
-            self.text.push('\n');
+            self.replace(self.text.len()..self.text.len(), "\n");
         }
     }
 
-    /// Leaves no two empty lines one after the other, and none at the end.
-    fn close_gaps(&mut self) {
-        while let Some(at) = self.text.find("\n\n\n") {
-            self.text.remove(at);
+    /// Leaves no two empty lines one after the other where lines were taken away, and none at the end.
+    fn close_gap(&mut self, at: usize) {
+        let (before, after) = self.text.split_at(at);
+        let is_open = before.is_empty() || before.ends_with("\n\n");
+        let gap = after.len() - after.trim_start_matches('\n').len();
+        if is_open && gap > 0 {
+            self.replace(at..at + gap, "");
         }
         while self.text.ends_with("\n\n") {
-            self.text.pop();
+            self.replace(self.text.len() - 1..self.text.len(), "");
         }
     }
+}
+
+/// Returns the place of the sign `=` in a line with an entry, without the blank before it, and whether
+/// there are more blanks.
+fn column(line: &str) -> Option<(usize, bool)> {
+    let at = line.find(" =")?;
+    let name = &line[..at];
+    let is_entry = !line.starts_with('[') && !name.contains(['"', '#']);
+    is_entry.then_some((at, name.ends_with(' ')))
 }
 
 /// Writes entries in braces, or says that they are too long for one line with `name` in front.
@@ -419,59 +439,5 @@ fn last_place(item: &Item) -> Option<usize> {
             inner.chain(header).max()
         }
         _ => None,
-    }
-}
-
-fn keys_named(table: &Table, path: &[&str], places: &mut Vec<Range<usize>>) {
-    let Some((name, owner)) = path.split_last() else {
-        return;
-    };
-    let owner = match owner {
-        [] => Some(table as &dyn toml_edit::TableLike),
-        _ => item_at(table, owner).and_then(Item::as_table_like),
-    };
-    if let Some((key, item)) = owner.and_then(|owner| owner.get_key_value(name))
-        && item.is_value()
-    {
-        places.extend(key.span());
-    }
-}
-
-fn strings_in(item: &Item, path: &mut Vec<String>, found: &mut Vec<(Vec<String>, Range<usize>)>) {
-    if let Some(table) = item.as_table_like() {
-        for (key, inner) in table.iter() {
-            path.push(key.to_owned());
-            strings_in(inner, path, found);
-            path.pop();
-        }
-    } else if let Item::Value(value) = item {
-        strings_of(value, path, found);
-    }
-}
-
-fn strings_of(
-    value: &toml_edit::Value,
-    path: &[String],
-    found: &mut Vec<(Vec<String>, Range<usize>)>,
-) {
-    match value {
-        toml_edit::Value::String(_) => {
-            found.extend(value.span().map(|place| (path.to_vec(), place)));
-        }
-        toml_edit::Value::Array(array) => {
-            for inner in array {
-                strings_of(inner, path, found);
-            }
-        }
-        toml_edit::Value::InlineTable(table) => {
-            // A table within a list.
-            let mut path = path.to_vec();
-            for (key, inner) in table.iter() {
-                path.push(key.to_owned());
-                strings_of(inner, &path, found);
-                path.pop();
-            }
-        }
-        _ => {}
     }
 }

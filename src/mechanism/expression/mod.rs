@@ -34,6 +34,8 @@ pub(super) use pieces::MOST_SWITCHES;
 pub(crate) use reserved::is_taken;
 #[cfg(feature = "cli")]
 pub(super) use reserved::taken;
+#[cfg(feature = "page")]
+pub(crate) use token::names_in;
 
 use super::force_quantity::ForceQuantity;
 use super::number::{self, Interval, Jet3, Number, Unary};

@@ -68,6 +68,26 @@ pub(super) fn scan(text: &str, from: usize) -> Result<Token<'_>, ExpressionError
     Ok(Token { kind, start, end })
 }
 
+/// Returns the places of the names in an expression, but for those of functions; up to a fault of
+/// the text.
+#[cfg(feature = "page")]
+pub(crate) fn names_in(text: &str) -> Vec<Span> {
+    let mut names: Vec<Span> = Vec::new();
+    let mut at = 0;
+    while let Ok(token) = scan(text, at) {
+        match token.kind {
+            TokenKind::End => break,
+            TokenKind::Name(_) => names.push(token.span()),
+            TokenKind::Symbol(b'(') if names.last().is_some_and(|name| name.end == at) => {
+                names.pop();
+            }
+            _ => {}
+        }
+        at = token.end;
+    }
+    names
+}
+
 /// Scans a number: digits with at most one point, then an exponent if its digits follow.
 fn scan_number(text: &str, start: usize) -> Result<(TokenKind<'_>, usize), ExpressionError> {
     let bytes = text.as_bytes();

@@ -1,10 +1,8 @@
 //! Joints that are driven, and joints that move freely.
 
+use super::mass::{USUAL_MASS, give_mass};
 use super::{Editing, Refusal};
-use crate::mechanism::{Coordinate, Joint, JointKind, Mechanism};
-
-/// Mass of a body that moves by forces and has none \[kg\].
-const USUAL_MASS: f64 = 1.0;
+use crate::mechanism::{Coordinate, JointKind};
 
 /// Drives the coordinate of a joint, from where it is drawn.
 pub(super) fn driver(editing: &mut Editing, name: &str) -> Result<(), Refusal> {
@@ -25,7 +23,11 @@ pub(super) fn freedom(editing: &mut Editing, name: &str) -> Result<(), Refusal> 
     let start = editing.value(start, coordinate.kind.is_angle());
     let mechanism = editing.mechanism()?;
     if mechanism.bodies.iter().all(|body| body.mass.is_none()) {
-        give_masses(editing, mechanism, editing.joint(name)?);
+        let joint = editing.joint(name)?;
+        let bodies = [joint.from, joint.to].map(|id| mechanism.markers[id.index()].body);
+        for body in bodies.into_iter().flatten() {
+            give_mass(editing, &mechanism.bodies[body.index()], USUAL_MASS);
+        }
     }
     let name = editing.names.new_name(&word);
     let value = format!("{{ {keys}, start = {start} }}");
@@ -71,41 +73,4 @@ fn coordinate(editing: &Editing, name: &str) -> Result<(Coordinate, String, Stri
         _ => format!("{body}_travel"),
     };
     Ok((coordinate, keys, word))
-}
-
-/// Gives the moving bodies of a joint the mass of a slender bar.
-fn give_masses(editing: &mut Editing, mechanism: &Mechanism, joint: &Joint) {
-    for marker in [joint.from, joint.to] {
-        let Some(id) = mechanism.markers[marker.index()].body else {
-            continue;
-        };
-        let body = &mechanism.bodies[id.index()];
-        let places: Vec<[f64; 3]> = body
-            .markers
-            .iter()
-            .map(|m| editing.drawn.inside(*m))
-            .collect();
-        let count = places.len() as f64;
-        let center = [0, 1].map(|k| places.iter().map(|place| place[k]).sum::<f64>() / count);
-        let reach = places
-            .iter()
-            .map(|p| f64::hypot(p[0] - center[0], p[1] - center[1]));
-        let long = 2.0 * reach.fold(0.0, f64::max);
-        let inertia = crate::mechanism::rounded(USUAL_MASS * long * long / 12.0, 4);
-        let [x, y] = center.map(|part| editing.length(part));
-        let name = &*body.name;
-        editing
-            .text
-            .set(&["bodies", name, "mass"], &format!("{USUAL_MASS}"));
-        if inertia > 0.0 {
-            editing
-                .text
-                .set(&["bodies", name, "inertia"], &format!("{inertia}"));
-        }
-        if [&*x, &*y] != ["0", "0"] {
-            editing
-                .text
-                .set(&["bodies", name, "center"], &format!("[{x}, {y}]"));
-        }
-    }
 }

@@ -54,15 +54,8 @@ pub(super) fn link(editing: &mut Editing, points: &[Target]) -> Result<(), Refus
 /// Returns the points with those at markers where the markers are.
 fn settled(editing: &Editing, points: &[Target]) -> Result<Vec<Target>, Refusal> {
     let settle = |point: &Target| {
-        let at = match &point.onto {
-            Onto::Marker(path) => {
-                let [x, y, _] = editing.drawn.place(editing.marker(path)?);
-                [x, y]
-            }
-            _ => point.at.map(|x| editing.rounded(x)),
-        };
         Ok(Target {
-            at,
+            at: editing.settled(point)?,
             onto: point.onto.clone(),
         })
     };

@@ -6,19 +6,25 @@
 //! | `pivot` | a point is fixed to ground |
 //! | `slider` | a point slides along a line of ground or along a bar |
 //! | `cylinder` | a driver of the distance between two points |
+//! | `mass` | the mass of a body |
 //! | `drive` | a joint is driven, or moves freely |
 //! | `shift` | points are moved: the geometry changes |
 //! | `put` | a value of the file is set or taken away |
+//! | `rename` | a thing gets another name, everywhere |
+//! | `delete` | things are taken away, with what needs them |
 //! | `trace` | the path of a point is shown |
 //!
 //! A gesture says where it acts: at a point of the sheet, of ground, of a body or at a marker
 //! ([`Target`]). Its file changes the text by way of [`Editing`], and knows nothing of TOML.
 
 mod cylinder;
+mod delete;
 mod drive;
 mod link;
+mod mass;
 mod pivot;
 mod put;
+mod rename;
 mod shift;
 mod slider;
 mod trace;
@@ -29,7 +35,7 @@ use super::drawn::{Drawn, inside};
 use super::names::Names;
 use super::number::{angle, length};
 use super::text::{TomlText, in_braces};
-use crate::mechanism::{Joint, MarkerId, Mechanism};
+use crate::mechanism::{Body, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source};
 
 /// Decimals of angles \[deg\].
 const ANGLE_DECIMALS: usize = 2;
@@ -91,6 +97,8 @@ pub(super) struct Editing<'a> {
     pub(super) text: TomlText,
     pub(super) drawn: &'a Drawn,
     pub(super) names: Names,
+    /// The files beside the mechanism's, with their contents.
+    files: &'a [(String, String)],
     /// Decimals of points \[m\].
     decimals: usize,
 }
@@ -99,45 +107,82 @@ pub(super) struct Editing<'a> {
 ///
 /// # Errors
 ///
-/// The reason why it cannot be done; the file stays as it is then.
-pub(super) fn act(
-    gesture: &Value,
-    text: TomlText,
-    drawn: &Drawn,
-    decimals: usize,
-) -> Result<TomlText, Refusal> {
-    let mut editing = Editing {
-        names: Names::of(&text),
-        text,
-        drawn,
-        decimals,
-    };
+/// The reason why it cannot be done.
+pub(super) fn act(gesture: &Value, editing: &mut Editing) -> Result<(), Refusal> {
     let kind = gesture["kind"].as_str().unwrap_or_default();
     match kind {
-        "link" => link::link(&mut editing, &targets(gesture, "points")?),
-        "pivot" => pivot::pivot(&mut editing, name(gesture, "marker")?),
+        "link" => link::link(editing, &targets(gesture, "points")?),
+        "pivot" => pivot::pivot(editing, name(gesture, "marker")?),
         "slider" => slider::slider(
-            &mut editing,
+            editing,
             &target(&gesture["target"])?,
             number(gesture, "angle")?,
         ),
-        "slot" => slider::slot(
-            &mut editing,
-            name(gesture, "marker")?,
-            name(gesture, "body")?,
-        ),
-        "cylinder" => cylinder::cylinder(&mut editing, &targets(gesture, "points")?),
-        "driver" => drive::driver(&mut editing, name(gesture, "joint")?),
-        "freedom" => drive::freedom(&mut editing, name(gesture, "joint")?),
-        "shift" => shift::shift(&mut editing, gesture),
-        "put" => put::put(&mut editing, gesture),
-        "trace" => trace::trace(&mut editing, name(gesture, "marker")?),
+        "slot" => slider::slot(editing, name(gesture, "marker")?, name(gesture, "body")?),
+        "cylinder" => cylinder::cylinder(editing, &targets(gesture, "points")?),
+        "mass" => mass::mass(editing, name(gesture, "body")?, &gesture["mass"]),
+        "driver" => drive::driver(editing, name(gesture, "joint")?),
+        "freedom" => drive::freedom(editing, name(gesture, "joint")?),
+        "shift" => shift::shift(editing, gesture),
+        "put" => put::put(editing, gesture),
+        "rename" => rename::rename(editing, name(gesture, "old")?, name(gesture, "new")?),
+        "delete" => delete::delete(editing, &names(gesture, "names")?),
+        "trace" => trace::trace(editing, name(gesture, "marker")?),
         _ => Err(Refusal::Because(format!("no gesture is called `{kind}`"))),
-    }?;
-    Ok(editing.text)
+    }
+}
+
+/// Returns whether the places of bodies are to be written anew after a gesture.
+pub(super) fn moves(gesture: &Value) -> bool {
+    matches!(gesture["kind"].as_str(), Some("shift"))
 }
 
 impl<'a> Editing<'a> {
+    /// Begins to change a text, whose lengths have these decimals.
+    pub(super) fn new(
+        text: TomlText,
+        drawn: &'a Drawn,
+        files: &'a [(String, String)],
+        decimals: usize,
+    ) -> Self {
+        Self {
+            names: Names::of(&text),
+            text,
+            drawn,
+            files,
+            decimals,
+        }
+    }
+
+    /// Begins once more with the text as it is now.
+    pub(super) fn again(&self) -> Self {
+        Self::new(self.text.clone(), self.drawn, self.files, self.decimals)
+    }
+
+    /// Returns the errors of the text as it is now; a file without bodies has none by that.
+    pub(super) fn errors(&self) -> Vec<Diagnostic> {
+        let source = Source::new("", self.text.as_str()).with_files(self.files.to_vec());
+        let problems = Mechanism::parse(&source).err().unwrap_or_default();
+        let is_error = |problem: &Diagnostic| {
+            problem.severity == Severity::Error && problem.code != "no-bodies"
+        };
+        problems.into_iter().filter(is_error).collect()
+    }
+
+    /// Returns the global point of a target: of a marker its own, otherwise as fine as the sheet shows it.
+    pub(super) fn settled(&self, target: &Target) -> Result<[f64; 2], Refusal> {
+        let Onto::Marker(path) = &target.onto else {
+            return Ok(target.at.map(|x| self.rounded(x)));
+        };
+        let [x, y, _] = self.drawn.place(self.marker(path)?);
+        // Lengths are written so fine that a point is where it was drawn but for their rounding.
+        let slack = 2.0 * 10.0_f64.powi(-(self.decimals as i32) - 1);
+        Ok([x, y].map(|x| {
+            let drawn = self.rounded(x);
+            if (x - drawn).abs() < slack { drawn } else { x }
+        }))
+    }
+
     /// Returns the mechanism that is drawn.
     ///
     /// # Errors
@@ -159,6 +204,14 @@ impl<'a> Editing<'a> {
         let mut joints = self.mechanism()?.joints.iter();
         let joint = joints.find(|joint| joint.name == name);
         joint.ok_or_else(|| format!("there is no joint `{name}`").into())
+    }
+
+    /// Returns a body by its name.
+    pub(super) fn body(&self, name: &str) -> Result<&'a Body, Refusal> {
+        let mechanism = self.mechanism()?;
+        let id = mechanism.body_id(name);
+        let id = id.ok_or_else(|| Refusal::Because(format!("there is no body `{name}`")))?;
+        Ok(&mechanism.bodies[id.index()])
     }
 
     /// Returns the body that has a marker, `ground` for ground.
@@ -226,6 +279,14 @@ impl<'a> Editing<'a> {
             body => self.text.set(&["bodies", body, "markers", name], &place),
         }
         format!("{body}.{name}")
+    }
+
+    /// Returns a name for a marker of ground: the word, or the word with a number.
+    pub(super) fn ground_name(&self, word: &str) -> String {
+        let numbered = (2..).map(|number| format!("{word}_{number}"));
+        let mut names = std::iter::once(word.to_owned()).chain(numbered);
+        let free = names.find(|name| !self.text.has(&["ground", "markers", name]));
+        free.unwrap_or_default()
     }
 
     /// Returns the marker of a target, which is added if it is none yet; a target on the bare sheet
@@ -338,15 +399,19 @@ fn target(value: &Value) -> Result<Target, Refusal> {
     })
 }
 
-/// Returns a text whose estimates are near the places at which its mechanism is drawn, so that it
-/// closes the same way again.
-pub(super) fn settled(text: TomlText, drawn: &Drawn, decimals: usize) -> TomlText {
-    let mut editing = Editing {
-        names: Names::of(&text),
-        text,
-        drawn,
-        decimals,
-    };
-    shift::refresh_estimates(&mut editing);
-    editing.text
+fn names<'a>(gesture: &'a Value, key: &str) -> Result<Vec<&'a str>, Refusal> {
+    let list = gesture[key].as_array().map_or(&[][..], Vec::as_slice);
+    let names: Vec<&str> = list.iter().filter_map(Value::as_str).collect();
+    match names.is_empty() {
+        true => Err(format!("the gesture lacks the names `{key}`").into()),
+        false => Ok(names),
+    }
+}
+
+/// Writes the places at which the mechanism is drawn as estimates, so that it closes the same way
+/// again.
+pub(super) fn settle(editing: &mut Editing) {
+    /// Part of the drawing's size, and angle \[rad\], from which an estimate is far from the drawing.
+    const FAR: f64 = 0.02;
+    shift::refresh_estimates(editing, FAR);
 }

@@ -9,13 +9,24 @@ use super::{Editing, Refusal, point};
 use crate::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, constant};
 
 /// Change of a number below which it stays as it is \[m or rad\].
-const UNCHANGED: f64 = 1e-9;
+pub(super) const UNCHANGED: f64 = 1e-9;
 
 /// The answer to the question whether a parameter changes or the number in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Through {
+pub(super) enum Through {
     Parameter,
     Number,
+}
+
+impl Through {
+    /// Returns the answer that a gesture gives.
+    pub(super) fn of(gesture: &Value) -> Option<Self> {
+        match gesture["through"].as_str() {
+            Some("parameter") => Some(Self::Parameter),
+            Some("number") => Some(Self::Number),
+            _ => None,
+        }
+    }
 }
 
 /// The places that are meant.
@@ -26,28 +37,46 @@ struct Meant {
     inside: BTreeMap<MarkerId, [f64; 3]>,
 }
 
-/// Moves the points at `markers`, with all that is pinned to them, by the way `by` \[m\]. A bar gets
-/// another length and direction, a plate another shape, and a body all of whose points move goes
-/// along. Start values of drivers follow. Where a number is an expression, `through` says whether
-/// its `parameter` changes or the `number` takes its place.
+/// Moves the points at `markers`, with all that is pinned to them, by the way `by` \[m\]. Where a number
+/// is an expression, `through` says whether its `parameter` changes or the `number` takes its place.
 pub(super) fn shift(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
-    let mechanism = editing.mechanism()?;
     let by = point(&gesture["by"])?;
-    let through = match gesture["through"].as_str() {
-        Some("parameter") => Some(Through::Parameter),
-        Some("number") => Some(Through::Number),
-        _ => None,
-    };
     let paths = gesture["markers"].as_array().map_or(&[][..], Vec::as_slice);
-    let mut moved: BTreeSet<MarkerId> = BTreeSet::new();
-    for path in paths {
-        let marker = editing.marker(path.as_str().unwrap_or_default())?;
-        moved.extend(editing.pinned_to(marker)?);
-    }
-    if moved.is_empty() {
+    let markers = paths
+        .iter()
+        .map(|path| editing.marker(path.as_str().unwrap_or_default()));
+    let markers: Vec<MarkerId> = markers.collect::<Result<_, _>>()?;
+    if markers.is_empty() {
         return Err("no point is to be moved".into());
     }
-    let meant = meant(editing, mechanism, &moved, by);
+    // Points that are dragged stay as fine as the sheet shows them.
+    move_rounded(editing, &markers, by, Through::of(gesture), true)
+}
+
+/// Moves points with all that is pinned to them. A bar gets another length and direction, a plate
+/// another shape, and a body all of whose points move goes along. Start values of drivers follow.
+pub(super) fn move_points(
+    editing: &mut Editing,
+    markers: &[MarkerId],
+    by: [f64; 2],
+    through: Option<Through>,
+) -> Result<(), Refusal> {
+    move_rounded(editing, markers, by, through, false)
+}
+
+fn move_rounded(
+    editing: &mut Editing,
+    markers: &[MarkerId],
+    by: [f64; 2],
+    through: Option<Through>,
+    is_rounded: bool,
+) -> Result<(), Refusal> {
+    let mechanism = editing.mechanism()?;
+    let mut moved: BTreeSet<MarkerId> = BTreeSet::new();
+    for marker in markers {
+        moved.extend(editing.pinned_to(*marker)?);
+    }
+    let meant = meant(editing, mechanism, &moved, by, is_rounded);
     for (marker, place) in &meant.inside {
         set_marker(editing, mechanism, *marker, *place, through)?;
     }
@@ -64,6 +93,7 @@ fn meant(
     mechanism: &Mechanism,
     moved: &BTreeSet<MarkerId>,
     by: [f64; 2],
+    is_rounded: bool,
 ) -> Meant {
     let drawn = editing.drawn;
     let mut meant = Meant {
@@ -77,7 +107,11 @@ fn meant(
         } else {
             [0.0; 2]
         };
-        [x + way[0], y + way[1]].map(|x| editing.rounded(x))
+        let place = [x + way[0], y + way[1]];
+        match is_rounded {
+            true => place.map(|x| editing.rounded(x)),
+            false => place,
+        }
     };
     for marker in moved {
         if mechanism.markers[marker.index()].body.is_none() {
@@ -116,7 +150,7 @@ fn meant(
 }
 
 /// Returns foot and head of a bar: two markers, one at the origin, the other on the x-axis.
-fn ends_of_bar(editing: &Editing, markers: &[MarkerId]) -> Option<[MarkerId; 2]> {
+pub(super) fn ends_of_bar(editing: &Editing, markers: &[MarkerId]) -> Option<[MarkerId; 2]> {
     let [a, b] = markers else {
         return None;
     };
@@ -356,11 +390,10 @@ fn set_parameter(
     Ok(())
 }
 
-/// Gives the bodies whose estimates are far from where they are drawn their present places.
-pub(in crate::studio) fn refresh_estimates(editing: &mut Editing) {
-    /// Part of the drawing's size, and angle \[rad\], that are far.
-    const FAR: f64 = 0.02;
-    let Some(mechanism) = editing.drawn.mechanism.clone() else {
+/// Gives the bodies whose estimates are off by more than a part of the drawing's size, or by more than an
+/// angle of as many radians, their present places.
+pub(super) fn refresh_estimates(editing: &mut Editing, far: f64) {
+    let Some(mechanism) = &editing.drawn.mechanism else {
         return;
     };
     if editing.drawn.open.is_some() {
@@ -375,8 +408,8 @@ pub(in crate::studio) fn refresh_estimates(editing: &mut Editing) {
             .map(|part| part.value(&editing.drawn.parameters));
         let off = f64::hypot(estimate[0] - frame[0], estimate[1] - frame[1]);
         let turned = super::super::number::within_turn(estimate[2] - frame[2]).abs();
-        if off > FAR * size || turned > FAR {
-            set_estimate(editing, &mechanism, BodyId(index), frame);
+        if off > far * size || turned > far {
+            set_estimate(editing, mechanism, BodyId(index), frame);
         }
     }
 }

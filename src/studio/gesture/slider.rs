@@ -20,14 +20,8 @@ pub(super) fn slider(editing: &mut Editing, target: &Target, angle: f64) -> Resu
         Onto::Sheet | Onto::Ground => None,
         _ => Some(editing.marker_at(target)?),
     };
-    let at = match &target.onto {
-        Onto::Marker(path) => {
-            let [x, y, _] = editing.drawn.place(editing.marker(path)?);
-            [x, y]
-        }
-        _ => target.at.map(|x| editing.rounded(x)),
-    };
-    let guide = guide_name(editing);
+    let at = editing.settled(target)?;
+    let guide = editing.ground_name("guide");
     let guide = editing.add_marker("ground", &guide, [at[0], at[1], angle]);
     let letter = match &other {
         Some(path) => marker_name(path).to_owned(),
@@ -77,10 +71,4 @@ pub(super) fn slot(editing: &mut Editing, path: &str, body: &str) -> Result<(), 
     };
     editing.join("slot", "slot", [&line, path]);
     Ok(())
-}
-
-fn guide_name(editing: &Editing) -> String {
-    let names = std::iter::once("guide".to_owned()).chain((2..).map(|k| format!("guide_{k}")));
-    let mut free = names.filter(|name| !editing.text.has(&["ground", "markers", name]));
-    free.next().unwrap_or_default()
 }
