@@ -6,8 +6,14 @@
 //! | `pivot` | a point is fixed to ground |
 //! | `slider` | a point slides along a line of ground or along a bar |
 //! | `cylinder` | a driver of the distance between two points |
+//! | `wheels`, `wheel` | two wheels in mesh or on a belt; where a wheel has its centre |
+//! | `rack` | a pinion on a rack |
+//! | `cam` | a cam with its follower |
+//! | `spring` | a spring or a damper between two points |
+//! | `load` | a force at a point |
 //! | `mass` | the mass of a body |
 //! | `drive` | a joint is driven, or moves freely |
+//! | `stop` | limits of a coordinate |
 //! | `shift` | points are moved: the geometry changes |
 //! | `put` | a value of the file is set or taken away |
 //! | `rename` | a thing gets another name, everywhere |
@@ -17,17 +23,24 @@
 //! A gesture says where it acts: at a point of the sheet, of ground, of a body or at a marker
 //! ([`Target`]). Its file changes the text by way of [`Editing`], and knows nothing of TOML.
 
+mod cam;
 mod cylinder;
 mod delete;
 mod drive;
 mod link;
+mod load;
 mod mass;
 mod pivot;
 mod put;
+mod rack;
 mod rename;
 mod shift;
 mod slider;
+mod spring;
+mod stop;
 mod trace;
+mod wheel;
+mod wheels;
 
 use serde_json::Value;
 
@@ -120,9 +133,19 @@ pub(super) fn act(gesture: &Value, editing: &mut Editing) -> Result<(), Refusal>
         ),
         "slot" => slider::slot(editing, name(gesture, "marker")?, name(gesture, "body")?),
         "cylinder" => cylinder::cylinder(editing, &targets(gesture, "points")?),
+        "wheels" => wheels::wheels(editing, gesture),
+        "rack" => rack::rack(
+            editing,
+            &target(&gesture["point"])?,
+            point(&gesture["contact"])?,
+        ),
+        "cam" => cam::cam(editing, gesture),
+        "spring" | "damper" => spring::spring(editing, kind, &targets(gesture, "points")?),
+        "load" => load::load(editing, name(gesture, "marker")?),
         "mass" => mass::mass(editing, name(gesture, "body")?, &gesture["mass"]),
         "driver" => drive::driver(editing, name(gesture, "joint")?),
         "freedom" => drive::freedom(editing, name(gesture, "joint")?),
+        "stop" => stop::stop(editing, gesture),
         "shift" => shift::shift(editing, gesture),
         "put" => put::put(editing, gesture),
         "rename" => rename::rename(editing, name(gesture, "old")?, name(gesture, "new")?),

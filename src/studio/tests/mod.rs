@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::host::Host;
 
 mod names;
+mod parts;
 
 pub(super) const EMPTY: &str = "format = 1\nname = \"mechanism\"\n";
 

@@ -1,0 +1,256 @@
+//! Wheels, racks, cams, springs, loads, masses and stops.
+
+use serde_json::{Value, json};
+
+use super::super::host::Host;
+use super::{EMPTY, act, refusal, shipped_studio, state, studio};
+
+fn ground(x: f64, y: f64) -> Value {
+    json!({ "at": [x, y], "ground": true })
+}
+
+fn marker(path: &str) -> Value {
+    json!({ "at": [0, 0], "marker": path })
+}
+
+/// Returns the angle of a body \[rad\].
+fn angle(view: &Value, body: &str) -> f64 {
+    let bodies = view["sketch"]["bodies"]
+        .as_array()
+        .expect("there are bodies");
+    let body = bodies
+        .iter()
+        .find(|found| found["name"] == body)
+        .expect("it is drawn");
+    body["frame"][2].as_f64().expect("an angle")
+}
+
+/// Drives a joint and turns it; returns the view.
+fn turned(host: &mut Host, joint: &str, driver: &str, by: &str) -> Value {
+    act(host, &json!({ "kind": "driver", "joint": joint }));
+    let path = ["drivers", driver, "start"];
+    act(host, &json!({ "kind": "put", "path": path, "value": by }))
+}
+
+#[test]
+fn a_train_of_three_wheels_turns_by_its_radii() {
+    let mut host = studio(EMPTY);
+    let pair = json!({
+        "kind": "wheels", "type": "gear",
+        "points": [ground(0.0, 0.0), ground(0.3, 0.0)], "contact": [0.1, 0.02],
+    });
+    assert_eq!(state(&act(&mut host, &pair)), "undriven");
+    let next = json!({
+        "kind": "wheels", "type": "gear",
+        "points": [marker("wheel_2.B"), ground(0.3, 0.5)], "contact": [0.31, 0.2],
+    });
+    act(&mut host, &next);
+    let view = turned(&mut host, "A", "wheel_angle", "20*deg");
+    assert_eq!(state(&view), "driven");
+    insta::assert_snapshot!(host.text());
+    assert!((angle(&view, "wheel_2").to_degrees() + 10.0).abs() < 1e-9);
+    assert!((angle(&view, "wheel_3").to_degrees() - 20.0 / 3.0).abs() < 1e-9);
+}
+
+#[test]
+fn wheels_on_one_bar_are_carried_by_it() {
+    let mut host = studio(EMPTY);
+    let link = json!({ "kind": "link", "points": [ground(0.0, 0.0), { "at": [0.24, 0.1] }] });
+    act(&mut host, &link);
+    let pair = json!({
+        "kind": "wheels", "type": "internal",
+        "points": [marker("link.A"), marker("link.B")], "contact": [0.36, 0.15],
+    });
+    let view = act(&mut host, &pair);
+    assert_eq!(state(&view), "undriven");
+    insta::assert_snapshot!(host.text());
+}
+
+#[test]
+fn a_belt_runs_over_wheels_with_radii() {
+    let mut host = studio(EMPTY);
+    let pair = json!({
+        "kind": "wheels", "type": "crossed",
+        "points": [ground(0.0, 0.0), ground(0.3, 0.1)], "radii": [0.05, 0.1],
+    });
+    act(&mut host, &pair);
+    let view = turned(&mut host, "A", "wheel_angle", "20*deg");
+    assert_eq!(state(&view), "driven");
+    assert!((angle(&view, "wheel_2").to_degrees() + 10.0).abs() < 1e-9);
+    insta::assert_snapshot!(host.text());
+}
+
+#[test]
+fn wheels_that_cannot_mesh_are_refused() {
+    let mut host = studio(EMPTY);
+    let link = |x: f64| json!({ "kind": "link", "points": [ground(x, 0.0), { "at": [x, 0.2] }] });
+    act(&mut host, &link(0.0));
+    act(&mut host, &link(0.5));
+    let mut why = |kind: &str, points: [Value; 2], contact: Value, radii: Value| {
+        let gesture = json!({
+            "kind": "wheels", "type": kind, "points": points, "contact": contact, "radii": radii,
+        });
+        refusal(&mut host, &gesture)
+    };
+    let apart = || [ground(0.0, 1.0), ground(0.4, 1.0)];
+    let none = || Value::Null;
+    let reasons = [
+        why("gear", apart(), json!([0.5, 1.0]), none()),
+        why("internal", apart(), json!([0.2, 1.0]), none()),
+        why(
+            "gear",
+            [ground(0.0, 1.0), ground(0.0, 1.0)],
+            json!([0, 1]),
+            none(),
+        ),
+        why(
+            "gear",
+            [marker("link.B"), marker("link_2.D")],
+            json!([0.2, 0.2]),
+            none(),
+        ),
+        why(
+            "gear",
+            [marker("link.B"), ground(0.2, 0.2)],
+            json!([0.1, 0.2]),
+            none(),
+        ),
+        why("gear", apart(), none(), none()),
+        why("belt", apart(), none(), json!([0.5, 0.05])),
+        why("belt", apart(), none(), json!([0.0, 0.05])),
+        why("crossed", apart(), none(), json!([0.3, 0.2])),
+        why("chain", apart(), none(), none()),
+    ];
+    insta::assert_snapshot!(reasons.join("\n"));
+}
+
+#[test]
+fn a_rack_moves_as_its_pinion_rolls() {
+    let contacts = [[0.1, -0.03], [0.1, 0.03], [0.13, 0.04]];
+    for (index, contact) in contacts.into_iter().enumerate() {
+        let mut host = studio(EMPTY);
+        let rack = json!({ "kind": "rack", "point": ground(0.1, 0.0), "contact": contact });
+        assert_eq!(state(&act(&mut host, &rack)), "undriven");
+        if index == 0 {
+            insta::assert_snapshot!(host.text());
+        }
+        let view = turned(&mut host, "A", "pinion_angle", "60*deg");
+        assert_eq!(state(&view), "driven");
+        // The pinion's rim moves the rack along.
+        let bodies = view["sketch"]["bodies"]
+            .as_array()
+            .expect("there are bodies");
+        let frame = &bodies[1]["frame"];
+        let [x, y] = [0, 1].map(|k| frame[k].as_f64().expect("a number"));
+        let [u, v] = [contact[0] - 0.1, contact[1]];
+        let turn = 60.0_f64.to_radians();
+        let moved = [contact[0] - v * turn, contact[1] + u * turn];
+        assert!(
+            f64::hypot(x - moved[0], y - moved[1]) < 2e-5,
+            "{contact:?}: {x} {y}, {moved:?}"
+        );
+    }
+}
+
+#[test]
+fn a_cam_lifts_its_follower_by_a_third() {
+    for (kind, reach) in [("knife", 0.03), ("roller", 0.04), ("flat", 0.03)] {
+        let mut host = studio(EMPTY);
+        let cam = json!({
+            "kind": "cam", "point": ground(0.05, 0.02), "contact": [0.05, 0.05], "follower": kind,
+        });
+        let view = act(&mut host, &cam);
+        assert_eq!(state(&view), "undriven", "{}", view["status"]);
+        insta::assert_snapshot!(format!("cam_{kind}"), host.text());
+        let height = |view: &Value| {
+            let bodies = view["sketch"]["bodies"]
+                .as_array()
+                .expect("there are bodies");
+            bodies[1]["frame"][1].as_f64().expect("a number") - 0.02
+        };
+        assert!((height(&view) - reach).abs() < 1e-9, "{kind}");
+        let view = turned(&mut host, "A", "cam_angle", "-90*deg");
+        assert_eq!(state(&view), "driven");
+        assert!(
+            (height(&view) - reach - 0.01).abs() < 1e-6,
+            "{kind} {}",
+            height(&view)
+        );
+    }
+}
+
+#[test]
+fn a_cam_needs_ground_and_a_radius() {
+    let mut host = studio(EMPTY);
+    let link = json!({ "kind": "link", "points": [ground(0.0, 0.0), { "at": [0.2, 0.0] }] });
+    act(&mut host, &link);
+    let mut why = |point: Value, contact: [f64; 2], follower: &str| {
+        let gesture =
+            json!({ "kind": "cam", "point": point, "contact": contact, "follower": follower });
+        refusal(&mut host, &gesture)
+    };
+    let reasons = [
+        why(marker("link.B"), [0.2, 0.1], "knife"),
+        why(ground(0.5, 0.0), [0.5, 0.0], "knife"),
+        why(ground(0.5, 0.0), [0.5, 0.1], "spoon"),
+    ];
+    insta::assert_snapshot!(reasons.join("\n"));
+}
+
+#[test]
+fn a_free_bar_has_mass_spring_damper_load_and_stop() {
+    let mut host = studio(EMPTY);
+    let link = json!({ "kind": "link", "points": [ground(0.0, 0.0), { "at": [0.3, 0.0] }] });
+    act(&mut host, &link);
+    act(
+        &mut host,
+        &json!({ "kind": "mass", "body": "link", "mass": 2.5 }),
+    );
+    act(&mut host, &json!({ "kind": "freedom", "joint": "A" }));
+    let ends = json!([{ "at": [0.2, 0.2], "ground": true }, { "at": [0.2, 0.0], "body": "link" }]);
+    act(&mut host, &json!({ "kind": "spring", "points": ends }));
+    let ends = json!([marker("ground.C"), marker("link.B")]);
+    act(&mut host, &json!({ "kind": "damper", "points": ends }));
+    act(&mut host, &json!({ "kind": "load", "marker": "link.B" }));
+    let view = act(&mut host, &json!({ "kind": "stop", "joint": "A" }));
+    assert_eq!(state(&view), "free");
+    insta::assert_snapshot!(host.text());
+}
+
+#[test]
+fn stops_are_around_the_value_of_today() {
+    let mut host = shipped_studio("excavator_arm.toml");
+    act(
+        &mut host,
+        &json!({ "kind": "stop", "driver": "boom_cylinder" }),
+    );
+    act(
+        &mut host,
+        &json!({ "kind": "stop", "driver": "stick_angle", "max": 0.0 }),
+    );
+    let view = act(&mut host, &json!({ "kind": "stop", "joint": "boom_foot" }));
+    assert_eq!(state(&view), "driven");
+    let lines = host.text().lines().filter(|line| line.contains("_stop "));
+    insta::assert_snapshot!(lines.collect::<Vec<_>>().join("\n"));
+    let beyond = json!({ "kind": "stop", "driver": "boom_cylinder", "min": 2.5 });
+    let around = "it is at 2.3 m now: choose limits on both sides of that";
+    assert_eq!(refusal(&mut host, &beyond), around);
+    let rod = json!({ "kind": "stop", "joint": "rod" });
+    let no_coordinate = "joint `rod` has no coordinate of its own to be limited: choose a pin or a \
+                         slide";
+    assert_eq!(refusal(&mut host, &rod), no_coordinate);
+}
+
+#[test]
+fn forces_and_masses_that_make_no_sense_are_refused() {
+    let mut host = shipped_studio("excavator_arm.toml");
+    let mut why = |gesture: Value| refusal(&mut host, &gesture);
+    let reasons = [
+        why(json!({ "kind": "load", "marker": "ground.boom_foot" })),
+        why(json!({ "kind": "mass", "body": "boom" })),
+        why(json!({ "kind": "mass", "body": "boom", "mass": -1 })),
+        why(json!({ "kind": "spring", "points": [marker("boom.foot"), marker("boom.tip")] })),
+        why(json!({ "kind": "damper", "points": [marker("boom.tip"), marker("stick.pin")] })),
+    ];
+    insta::assert_snapshot!(reasons.join("\n"));
+}
