@@ -10,6 +10,7 @@
 //! | `text` | the text of a file, changed in place |
 //! | `places`, `reference` | its keys and texts, and the names in them |
 //! | `names`, `number` | new names, and numbers as a person writes them |
+//! | `unit_of` | the unit of a number by its place |
 //! | `drawn` | the mechanism where its file starts it |
 //! | `gesture` | gestures, one file each |
 //! | `sketch` | what is drawn, for the pointer to find |
@@ -30,5 +31,6 @@ mod status;
 #[cfg(test)]
 mod tests;
 mod text;
+mod unit_of;
 
 pub use host::Host;

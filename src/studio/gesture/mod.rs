@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `link` | a bar or plate through points |
 //! | `pivot` | a point is fixed to ground |
+//! | `join` | a point is moved onto another one and pinned there |
 //! | `slider` | a point slides along a line of ground or along a bar |
 //! | `cylinder` | a driver of the distance between two points |
 //! | `wheels`, `wheel` | two wheels in mesh or on a belt; where a wheel has its centre |
@@ -15,6 +16,8 @@
 //! | `drive` | a joint is driven, or moves freely |
 //! | `stop` | limits of a coordinate |
 //! | `shift` | points are moved: the geometry changes |
+//! | `length` | the distance between two points is set |
+//! | `parameter` | a number becomes a parameter |
 //! | `put` | a value of the file is set or taken away |
 //! | `rename` | a thing gets another name, everywhere |
 //! | `delete` | things are taken away, with what needs them |
@@ -27,9 +30,12 @@ mod cam;
 mod cylinder;
 mod delete;
 mod drive;
+mod join;
+mod length;
 mod link;
 mod load;
 mod mass;
+mod parameter;
 mod pivot;
 mod put;
 mod rack;
@@ -126,6 +132,7 @@ pub(super) fn act(gesture: &Value, editing: &mut Editing) -> Result<(), Refusal>
     match kind {
         "link" => link::link(editing, &targets(gesture, "points")?),
         "pivot" => pivot::pivot(editing, name(gesture, "marker")?),
+        "join" => join::join(editing, gesture),
         "slider" => slider::slider(
             editing,
             &target(&gesture["target"])?,
@@ -147,6 +154,8 @@ pub(super) fn act(gesture: &Value, editing: &mut Editing) -> Result<(), Refusal>
         "freedom" => drive::freedom(editing, name(gesture, "joint")?),
         "stop" => stop::stop(editing, gesture),
         "shift" => shift::shift(editing, gesture),
+        "length" => length::length(editing, gesture),
+        "parameter" => parameter::parameter(editing, gesture),
         "put" => put::put(editing, gesture),
         "rename" => rename::rename(editing, name(gesture, "old")?, name(gesture, "new")?),
         "delete" => delete::delete(editing, &names(gesture, "names")?),
@@ -157,7 +166,7 @@ pub(super) fn act(gesture: &Value, editing: &mut Editing) -> Result<(), Refusal>
 
 /// Returns whether the places of bodies are to be written anew after a gesture.
 pub(super) fn moves(gesture: &Value) -> bool {
-    matches!(gesture["kind"].as_str(), Some("shift"))
+    matches!(gesture["kind"].as_str(), Some("shift" | "join" | "length"))
 }
 
 impl<'a> Editing<'a> {

@@ -1,0 +1,36 @@
+//! A point that is moved onto another one and pinned there.
+
+use serde_json::Value;
+
+use super::shift::{Through, move_points};
+use super::{Editing, Refusal, marker_name, name};
+
+/// Moves a marker, with all that is pinned to it, onto another one and pins it there.
+pub(super) fn join(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
+    let (path, onto_path) = (name(gesture, "marker")?, name(gesture, "onto")?);
+    let (marker, onto) = (editing.marker(path)?, editing.marker(onto_path)?);
+    let moved = editing.pinned_to(marker)?;
+    if moved.contains(&onto) {
+        return Err(format!("`{path}` and `{onto_path}` are pinned to each other already").into());
+    }
+    let mechanism = editing.mechanism()?;
+    let body_of = |id: crate::mechanism::MarkerId| mechanism.markers[id.index()].body;
+    let there = editing.pinned_to(onto)?;
+    let shared = moved.iter().find_map(|id| {
+        let other = there.iter().find(|other| body_of(**other) == body_of(*id));
+        Some((*id, *other?))
+    });
+    if let Some((id, other)) = shared {
+        let [id, other] = [id, other].map(|id| mechanism.marker_path(id));
+        return Err(format!(
+            "`{id}` and `{other}` are points of one body, which cannot be pinned to each other: \
+             choose a point of another body"
+        )
+        .into());
+    }
+    let [from, to] = [marker, onto].map(|id| editing.drawn.place(id));
+    let by = [to[0] - from[0], to[1] - from[1]];
+    move_points(editing, &[marker], by, Through::of(gesture))?;
+    editing.join(marker_name(path), "revolute", [onto_path, path]);
+    Ok(())
+}
