@@ -21,12 +21,14 @@
 //! | `put` | a value of the file is set or taken away |
 //! | `rename` | a thing gets another name, everywhere |
 //! | `delete` | things are taken away, with what needs them |
+//! | `copy` | bodies are duplicated or mirrored |
 //! | `trace` | the path of a point is shown |
 //!
 //! A gesture says where it acts: at a point of the sheet, of ground, of a body or at a marker
 //! ([`Target`]). Its file changes the text by way of [`Editing`], and knows nothing of TOML.
 
 mod cam;
+mod copy;
 mod cylinder;
 mod delete;
 mod drive;
@@ -159,6 +161,7 @@ pub(super) fn act(gesture: &Value, editing: &mut Editing) -> Result<(), Refusal>
         "put" => put::put(editing, gesture),
         "rename" => rename::rename(editing, name(gesture, "old")?, name(gesture, "new")?),
         "delete" => delete::delete(editing, &names(gesture, "names")?),
+        "duplicate" | "mirror" => copy::copy(editing, gesture),
         "trace" => trace::trace(editing, name(gesture, "marker")?),
         _ => Err(Refusal::Because(format!("no gesture is called `{kind}`"))),
     }

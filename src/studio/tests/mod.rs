@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::host::Host;
 
+mod copies;
 mod geometry;
 mod names;
 mod parts;

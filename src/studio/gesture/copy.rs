@@ -1,0 +1,347 @@
+//! Bodies that are duplicated or mirrored, with the joints among them and with ground.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::super::number::{angle, within_turn};
+use super::super::reference::references;
+use super::super::text::{TomlText, in_braces};
+use super::{Editing, Refusal, names, number, point};
+use crate::mechanism::{Body, BodyId, Joint, JointKind, MarkerId};
+
+/// The way from a body to its copy.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    By([f64; 2]),
+    /// Over the line through a point at an angle \[rad\].
+    Over([f64; 2], f64),
+}
+
+impl Way {
+    /// Returns the copy of a frame; a mirrored one has mirrored points in it.
+    fn frame(self, [x, y, phi]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::By([dx, dy]) => [x + dx, y + dy, phi],
+            Self::Over([u, v], angle) => {
+                let (sin, cos) = (2.0 * angle).sin_cos();
+                let [dx, dy] = [x - u, y - v];
+                let place = [u + cos * dx + sin * dy, v + sin * dx - cos * dy];
+                [place[0], place[1], 2.0 * angle - phi]
+            }
+        }
+    }
+
+    fn is_mirror(self) -> bool {
+        matches!(self, Self::Over(..))
+    }
+}
+
+/// The names of the copies.
+struct Copies {
+    bodies: BTreeMap<String, String>,
+    /// Paths of points of ground.
+    ground: BTreeMap<String, String>,
+}
+
+impl Copies {
+    /// Returns the name of the copy of a body, or the path of that of a marker, if there is one.
+    fn of(&self, name: &str) -> Option<String> {
+        if let Some(copy) = self.ground.get(name) {
+            return Some(copy.clone());
+        }
+        let (body, rest) = name.split_at(name.find('.').unwrap_or(name.len()));
+        Some(format!("{}{rest}", self.bodies.get(body)?))
+    }
+}
+
+/// Copies `bodies`: moved `by` a way, or mirrored over the line through `at` at an `angle`. The joints
+/// among them and with ground are copied, too, with points of ground of their own.
+pub(super) fn copy(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
+    let mechanism = editing.mechanism()?;
+    let way = match gesture["kind"].as_str() {
+        Some("mirror") => Way::Over(point(&gesture["at"])?, number(gesture, "angle")?),
+        _ => Way::By(point(&gesture["by"])?),
+    };
+    let mut bodies: Vec<&Body> = Vec::new();
+    for name in names(gesture, "bodies")? {
+        let body = editing.body(name)?;
+        if !bodies.iter().any(|other| other.name == body.name) {
+            bodies.push(body);
+        }
+    }
+    let is_copied = |id: MarkerId| match mechanism.markers[id.index()].body {
+        Some(body) => bodies
+            .iter()
+            .any(|copied| copied.name == mechanism.bodies[body.index()].name),
+        None => true,
+    };
+    // An equation ties drivers and measures, which have no copies.
+    let joints = mechanism.joints.iter().filter(|joint| {
+        !matches!(joint.kind, JointKind::Coupling(_)) && joint.markers().all(is_copied)
+    });
+    let joints: Vec<&Joint> = joints.collect();
+    if way.is_mirror() {
+        refuse_unmirrored(&joints)?;
+    }
+    let mut copies = Copies {
+        bodies: BTreeMap::new(),
+        ground: BTreeMap::new(),
+    };
+    let wheels: Vec<BodyId> = (joints.iter())
+        .flat_map(|joint| {
+            let carrier = match joint.kind {
+                JointKind::Gear { carrier, .. } | JointKind::Belt { carrier, .. } => carrier,
+                JointKind::RackAndPinion { .. } | JointKind::Rolling { .. } => None,
+                _ => return Vec::new(),
+            };
+            let ends = joint.markers().map(|id| mechanism.markers[id.index()].body);
+            ends.chain([carrier]).flatten().collect()
+        })
+        .collect();
+    for body in &bodies {
+        let name = editing.names.new_name(stem(&body.name));
+        copies.bodies.insert(body.name.clone(), name);
+    }
+    for body in &bodies {
+        let id = mechanism.body_id(&body.name);
+        let mut frame = way.frame(editing.drawn.frame(id));
+        // The angles of wheels count turns.
+        if way.is_mirror() && !id.is_some_and(|id| wheels.contains(&id)) {
+            frame[2] = within_turn(frame[2]);
+        }
+        copy_body(editing, body, way, frame, &copies.bodies[&body.name]);
+    }
+    for joint in &joints {
+        for id in joint.markers() {
+            let marker = &mechanism.markers[id.index()];
+            let path = mechanism.marker_path(id);
+            if marker.body.is_none() && !copies.ground.contains_key(&path) {
+                let name = editing.ground_name(stem(&marker.name));
+                let place = way.frame(editing.drawn.inside(id));
+                let copy = editing.add_marker("ground", &name, place);
+                copies.ground.insert(path, copy);
+            }
+        }
+    }
+    for joint in joints {
+        copy_joint(editing, joint, way, &copies)?;
+    }
+    Ok(())
+}
+
+/// Refuses to mirror what has a shape of its own.
+fn refuse_unmirrored(joints: &[&Joint]) -> Result<(), Refusal> {
+    let shaped = joints.iter().find_map(|joint| match joint.kind {
+        JointKind::Cam { .. } => Some((joint, "the contour of its cam")),
+        JointKind::Curve(_) => Some((joint, "its curve")),
+        _ => None,
+    });
+    match shaped {
+        Some((joint, shape)) => Err(format!(
+            "joint `{}` cannot be mirrored, as {shape} would have to be drawn anew: duplicate the \
+             bodies, or choose others",
+            joint.name
+        )
+        .into()),
+        None => Ok(()),
+    }
+}
+
+/// Returns a name without the number behind it.
+fn stem(name: &str) -> &str {
+    match name.rsplit_once('_') {
+        Some((stem, number))
+            if number.bytes().all(|b| b.is_ascii_digit()) && !number.is_empty() =>
+        {
+            stem
+        }
+        _ => name,
+    }
+}
+
+fn copy_body(editing: &mut Editing, body: &Body, way: Way, frame: [f64; 3], name: &str) {
+    let own = ["bodies", &*body.name];
+    let mut markers = Vec::new();
+    let [x, y] = [frame[0], frame[1]].map(|x| editing.length(x));
+    let phi = angle(frame[2], super::ANGLE_DECIMALS);
+    let mut lines = vec![format!("estimate = [{x}, {y}, {phi}]")];
+    for key in editing.text.keys(&own) {
+        let path = [own[0], own[1], &key];
+        match &*key {
+            "markers" => {
+                for marker in editing.text.keys(&path) {
+                    let path = [own[0], own[1], "markers", &marker];
+                    let place = copied_marker(editing, &path, way.is_mirror());
+                    markers.push((marker, place));
+                }
+            }
+            "estimate" => {}
+            "center" if way.is_mirror() => {
+                lines.push(format!("{key} = {}", mirrored_list(editing, &path)));
+            }
+            _ => lines.push(format!("{key} = {}", editing.text.value(&path))),
+        }
+    }
+    let braces = in_braces("markers", &markers).filter(|_| !markers.is_empty());
+    if let Some(braces) = &braces {
+        lines.insert(0, format!("markers = {braces}"));
+    }
+    editing
+        .text
+        .add_section(&["bodies", name], &lines.join("\n"));
+    if braces.is_none() && !markers.is_empty() {
+        let lines: Vec<String> = (markers.iter())
+            .map(|(marker, place)| format!("{marker} = {place}"))
+            .collect();
+        let section = ["bodies", name, "markers"];
+        editing.text.add_section(&section, &lines.join("\n"));
+    }
+}
+
+/// Writes the copy of a marker.
+fn copied_marker(editing: &Editing, path: &[&str], is_mirror: bool) -> String {
+    if !is_mirror {
+        return editing.text.value(path);
+    }
+    if editing.text.element(path, 0).is_some() {
+        return mirrored_list(editing, path);
+    }
+    let part = |key: &str| editing.text.value(&[path, &[key]].concat());
+    format!(
+        "{{ r = {}, angle = {} }}",
+        part("r"),
+        negative(&part("angle"))
+    )
+}
+
+/// Writes a list `[x, y]` or `[x, y, angle]` with y and angle negative.
+fn mirrored_list(editing: &Editing, path: &[&str]) -> String {
+    let elements = (0..).map_while(|index| editing.text.element(path, index));
+    let elements = elements.enumerate().map(|(index, place)| {
+        let text = &editing.text.as_str()[place];
+        if index == 0 {
+            text.to_owned()
+        } else {
+            negative(text)
+        }
+    });
+    format!("[{}]", elements.collect::<Vec<_>>().join(", "))
+}
+
+/// Writes the negative of a number or of an expression.
+fn negative(value: &str) -> String {
+    let inside = value.trim().trim_matches(['"', '\'']);
+    let quoted = |text: String| match value.starts_with(['"', '\'']) {
+        true => format!("\"{text}\""),
+        false => text,
+    };
+    let number = inside.replace('_', "").parse::<f64>();
+    if number.as_ref().is_ok_and(|number| *number == 0.0) {
+        return value.to_owned();
+    }
+    // The sign of a number and that of a product are those of the whole.
+    let is_product = |text: &str| number.is_ok() || !text.contains(['+', '-', '(']);
+    match inside.strip_prefix('-') {
+        Some(rest) if is_product(rest) => quoted(rest.trim().to_owned()),
+        _ if is_product(inside) => quoted(format!("-{}", inside.trim_start_matches('+'))),
+        _ => quoted(format!("-({inside})")),
+    }
+}
+
+/// Adds the copy of a joint.
+fn copy_joint(
+    editing: &mut Editing,
+    joint: &Joint,
+    way: Way,
+    copies: &Copies,
+) -> Result<(), Refusal> {
+    let own = ["joints", &*joint.name];
+    let mut entries = Vec::new();
+    for key in editing.text.keys(&own) {
+        let value = editing.text.value(&[own[0], own[1], &key]);
+        let mut value = renamed(&key, &value, copies)?;
+        if way.is_mirror() {
+            value = mirrored(&key, value);
+        }
+        entries.push((key, value));
+    }
+    if way.is_mirror() {
+        mirror_phase(editing, &mut entries, joint, copies);
+    }
+    if way.is_mirror()
+        && matches!(
+            joint.kind,
+            JointKind::RackAndPinion { .. } | JointKind::Rolling { .. }
+        )
+        && !entries.iter().any(|(key, _)| key == "side")
+    {
+        entries.push(("side".to_owned(), "\"below\"".to_owned()));
+    }
+    let name = editing.names.new_name(stem(&joint.name));
+    match in_braces(&name, &entries) {
+        Some(braces) => editing.text.set(&["joints", &name], &braces),
+        None => {
+            let lines: Vec<String> = (entries.iter())
+                .map(|(key, value)| format!("{key} = {value}"))
+                .collect();
+            editing
+                .text
+                .add_section(&["joints", &name], &lines.join("\n"));
+        }
+    }
+    Ok(())
+}
+
+/// Mirrors the phase of wheels: its sign changes on a carrier that is mirrored, too; on one that is not,
+/// such as ground, and on racks and tracks, they mesh as they are drawn.
+fn mirror_phase(
+    editing: &Editing,
+    entries: &mut Vec<(String, String)>,
+    joint: &Joint,
+    copies: &Copies,
+) {
+    let carrier = match joint.kind {
+        JointKind::Gear { carrier, .. } | JointKind::Belt { carrier, .. } => carrier,
+        JointKind::RackAndPinion { .. } | JointKind::Rolling { .. } => None,
+        _ => return,
+    };
+    let mechanism = editing.drawn.mechanism.as_ref();
+    let bodies = mechanism.map_or(&[][..], |mechanism| &mechanism.bodies);
+    let carrier = carrier.and_then(|id| bodies.get(id.index()));
+    let is_carried = carrier.is_some_and(|body| copies.bodies.contains_key(&body.name));
+    let drawn = || "\"drawn\"".to_owned();
+    match entries.iter_mut().find(|(key, _)| key == "phase") {
+        Some((_, phase)) if is_carried && *phase != drawn() => *phase = negative(phase),
+        Some((_, phase)) => *phase = drawn(),
+        None if is_carried => {}
+        None => entries.push(("phase".to_owned(), drawn())),
+    }
+}
+
+/// Writes a value of a joint with the names of the copies.
+fn renamed(key: &str, value: &str, copies: &Copies) -> Result<String, Refusal> {
+    let head = format!("joints.copy.{key} = ");
+    let text = TomlText::new(format!("{head}{value}"));
+    let mut text = text.map_err(|error| error.to_string())?;
+    let parts: Vec<_> = (references(&text).into_iter())
+        .filter_map(|found| Some((found.place.clone(), copies.of(&found.name)?)))
+        .collect();
+    text.replace_all(&parts);
+    Ok(text.as_str()[head.len()..].trim_end().to_owned())
+}
+
+/// Writes a value of a joint mirrored.
+fn mirrored(key: &str, value: String) -> String {
+    match key {
+        "offset" => negative(&value),
+        "side" if value.trim_matches('"') == "above" => "\"below\"".to_owned(),
+        "side" => "\"above\"".to_owned(),
+        // The pulleys of a rope.
+        "markers" if value.contains("\"left\"") || value.contains("\"right\"") => value
+            .replace("\"left\"", "\"\u{0}\"")
+            .replace("\"right\"", "\"left\"")
+            .replace("\"\u{0}\"", "\"right\""),
+        _ => value,
+    }
+}
