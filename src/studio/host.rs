@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::document::Document;
 use super::gesture::Refusal;
+use super::inspect::inspect;
 use crate::page;
 
 /// A studio that is asked in JSON.
@@ -15,11 +16,12 @@ use crate::page;
 /// | `gesture` | `gesture`, `keep` (otherwise it is only shown) | a view, or `refused` |
 /// | `text_undo`, `text_redo` | | a view |
 /// | `view` | | a view |
+/// | `inspect` | `names` of a thing, paths of a point's markers, or none | a form, or `refused` |
 ///
 /// Each may have the `scale` of the picture \[units per metre\]. A view has `text`, `problems`,
 /// `is_stale` (the drawing is of an earlier text), `status`, `sketch`, `picture`, `can_undo`,
 /// `can_redo`; one that is only shown has status and picture. A refusal has `message`, or asks by
-/// `parameter`, `formula` and `value`. All other
+/// `parameter`, `formula` and `value`. A form has `title`, `kind`, `rows` and `actions`. All other
 /// requests are those of
 /// [`page::Host`].
 #[derive(Default)]
@@ -71,6 +73,14 @@ impl Host {
                 self.document.redo();
             }
             Some("view") => {}
+            Some("inspect") => {
+                let names = asked["names"].as_array().map_or(&[][..], Vec::as_slice);
+                let names: Vec<&str> = names.iter().filter_map(Value::as_str).collect();
+                return match inspect(&self.document, &names) {
+                    Ok(form) => form,
+                    Err(refusal) => refused(&refusal),
+                };
+            }
             _ => return self.page.answer(request),
         }
         self.document.view(scale)

@@ -14,6 +14,7 @@
 //! | `drawn` | the mechanism where its file starts it |
 //! | `gesture` | gestures, one file each |
 //! | `sketch` | what is drawn, for the pointer to find |
+//! | `inspect` | what is selected, as a form |
 //! | `status` | what a half-done drawing lacks |
 //! | `document` | a file with its undo |
 //! | `host` | [`Host`]: requests in JSON |
@@ -22,6 +23,7 @@ mod document;
 mod drawn;
 mod gesture;
 mod host;
+mod inspect;
 mod names;
 mod number;
 mod places;

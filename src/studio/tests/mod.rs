@@ -6,6 +6,7 @@ use super::host::Host;
 
 mod copies;
 mod geometry;
+mod inspect;
 mod names;
 mod parts;
 
