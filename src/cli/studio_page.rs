@@ -29,7 +29,7 @@ const OWN_SCRIPTS: [&str; 12] = [
     include_str!("../../studio/scripts/studio.js"),
 ];
 
-/// What the page begins with.
+/// The beginning of a page.
 pub(super) struct Beginning {
     /// The file to open: `name`, `text` and `files`, names with contents.
     pub(super) file: Option<Value>,

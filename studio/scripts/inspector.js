@@ -27,6 +27,7 @@ export class Inspector {
     for (const row of answer.rows) {
       this.row(rows, row);
     }
+    this.related(add(this.place, "p", { className: "related" }));
     const actions = add(this.place, "p", { className: "actions" });
     for (const { label, gesture, why } of answer.actions) {
       const button = add(actions, "button", { type: "button", disabled: Boolean(why), title: why ?? "" });
@@ -35,6 +36,20 @@ export class Inspector {
       }
       button.append(label);
       button.addEventListener("click", () => this.studio.act(gesture));
+    }
+  }
+
+  /** Offers to select what belongs to the selection: joints and drivers of a point, all things of none. */
+  related(place) {
+    const { selection, view } = this.studio;
+    const { joints, drivers, forces, stops, parameters } = view.sketch ?? {};
+    const names = (list, fits = () => true) => (list ?? []).filter(fits).map(({ name }) => name);
+    const groups = selection
+      ? [names(joints, (joint) => selection.joints?.includes(joint.name)), names(drivers, (driver) => driver.markers.some((marker) => selection.markers?.includes(marker)))]
+      : [names(drivers), names(forces), names(stops), names(parameters)];
+    for (const name of new Set(groups.flat())) {
+      const button = add(place, "button", { type: "button", textContent: name });
+      button.addEventListener("click", () => this.studio.select({ kind: "thing", name }));
     }
   }
 

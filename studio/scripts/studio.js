@@ -255,9 +255,11 @@ class Studio {
   keepSelection() {
     const { selection } = this;
     const { sketch } = this.view;
+    const things = ["joints", "drivers", "forces", "stops", "parameters"].flatMap((list) => sketch?.[list] ?? []);
     const gone =
       selection &&
-      ((selection.kind === "body" && !sketch?.bodies.some((body) => body.name === selection.name)) ||
+      ((selection.kind === "thing" && !things.some((thing) => thing.name === selection.name)) ||
+        (selection.kind === "body" && !sketch?.bodies.some((body) => body.name === selection.name)) ||
         (selection.kind === "point" &&
           !sketch?.points.some((point) => point.markers.some((marker) => selection.markers.includes(marker)))));
     if (gone) {

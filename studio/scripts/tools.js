@@ -49,6 +49,12 @@ function target(found, { own = false, ground = false } = {}) {
   return { at: found.at, ground };
 }
 
+/** Whether the foot of a point on the line of two others is between these. */
+function isBetween([x, y], [u, v], [a, b]) {
+  const along = (a - x) * (u - x) + (b - y) * (v - y);
+  return along > 0 && along < (u - x) ** 2 + (v - y) ** 2;
+}
+
 const NEEDS_POINT = "Choose a pin or the end of a link";
 
 /** A tool whose clicks are taken as they come. */
@@ -129,8 +135,13 @@ export const TOOLS = {
     label: "Gears",
     key: "w",
     group: "Machine parts",
-    hints: ["Click the centre of the first wheel", "Click the centre of the second wheel", "Click where the teeth meet"],
-    ...byClicks(3, ([a, b, at]) => ({ kind: "wheels", type: "gear", points: [a, b].map((each) => target(each)), contact: at.at })),
+    hints: ["Click the centre of the first wheel", "Click the centre of the second wheel", "Click where the teeth meet: between the centres, or beyond one for a ring"],
+    ...byClicks(3, ([a, b, at]) => ({
+      kind: "wheels",
+      type: isBetween(a.at, b.at, at.at) ? "gear" : "internal",
+      points: [a, b].map((each) => target(each)),
+      contact: at.at,
+    })),
   },
   belt: {
     label: "Belt",

@@ -50,7 +50,7 @@ pub(in crate::cli) struct Studio {
     port: u16,
 }
 
-/// What a studio consists of besides its page.
+/// The parts of a studio besides its page.
 struct Parts {
     solver: Cow<'static, [u8]>,
     /// Names and contents of what goes into FMUs.

@@ -59,7 +59,7 @@ use super::text::{TomlText, in_braces};
 use crate::mechanism::{Body, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source};
 
 /// Decimals of angles \[deg\].
-const ANGLE_DECIMALS: usize = 2;
+const ANGLE_DECIMALS: usize = 3;
 /// Part of the drawing's size within which two points are one.
 const SAME: f64 = 1e-6;
 
