@@ -204,10 +204,10 @@ impl<'a> Editing<'a> {
         problems.into_iter().filter(is_error).collect()
     }
 
-    /// Returns the global point of a target: of a marker its own, otherwise as fine as the sheet shows it.
+    /// Returns the global point of a target, of a marker its own.
     pub(super) fn settled(&self, target: &Target) -> Result<[f64; 2], Refusal> {
         let Onto::Marker(path) = &target.onto else {
-            return Ok(target.at.map(|x| self.rounded(x)));
+            return Ok(target.at);
         };
         let [x, y, _] = self.drawn.place(self.marker(path)?);
         // Lengths are written so fine that a point is where it was drawn but for their rounding.

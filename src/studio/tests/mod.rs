@@ -117,7 +117,7 @@ fn a_four_bar_is_drawn_in_four_gestures() {
     let marker = |path: &str| json!({ "at": [0, 0], "marker": path });
     let view = act(
         &mut host,
-        &json!({ "kind": "link", "points": [ground(0.0, 0.0), sheet(0.05, 0.0866)] }),
+        &json!({ "kind": "link", "points": [ground(0.0, 0.0), sheet(0.05, 0.086_602_54)] }),
     );
     assert_eq!(state(&view), "undriven");
     act(
