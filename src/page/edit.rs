@@ -7,6 +7,9 @@ use crate::mechanism::{DriverId, DriverSource, Mechanism, constant, rounded};
 
 /// Digits of an estimate: the assembly starts from it, and ends at the same pose.
 const ESTIMATE_DIGITS: usize = 9;
+/// Digits of all other numbers at most: a start value decides the pose, and rounding may put it
+/// beyond a stop or a dead point.
+const ALL_DIGITS: usize = 17;
 
 /// A text that is no mechanism file.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -50,9 +53,9 @@ pub fn edit(
             let parameters = table(root.get_mut("parameters"))?;
             match parameters.get_mut(&parameter.name) {
                 Some(item) if item.is_table_like() => {
-                    set(table(Some(item))?, "value", (*value).into());
+                    set_number(table(Some(item))?, "value", *value);
                 }
-                _ => set(parameters, &parameter.name, (*value).into()),
+                _ => set_number(parameters, &parameter.name, *value),
             }
         }
     }
@@ -66,9 +69,9 @@ pub fn edit(
             };
             let drivers = table(root.get_mut(key))?;
             let driver = table(drivers.get_mut(&driver.name))?;
-            set(driver, "start", (*value).into());
+            set_number(driver, "start", *value);
             if let Some(velocity) = velocity {
-                set(driver, "velocity", velocity.into());
+                set_number(driver, "velocity", velocity);
             }
         }
     }
@@ -114,13 +117,17 @@ fn table(item: Option<&mut Item>) -> Result<&mut dyn TableLike, EditError> {
         .ok_or(EditError::Table)
 }
 
-/// Sets a value of a table; a comment behind the old one stays, and its unit.
-fn set(table: &mut dyn TableLike, key: &str, value: Value) {
+/// Sets a number of a table; the unit of the old one stays.
+fn set_number(table: &mut dyn TableLike, key: &str, number: f64) {
+    let old = table.get(key).and_then(Item::as_value);
+    let in_unit = old.and_then(|old| in_unit_of(old, number, ALL_DIGITS));
+    let value = in_unit.unwrap_or_else(|| quotient(number, 1.0, ALL_DIGITS).into());
+    set(table, key, value);
+}
+
+/// Sets a value of a table; a comment behind the old one stays.
+fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
     if let Some(Item::Value(old)) = table.get_mut(key) {
-        let in_unit = value
-            .as_float()
-            .and_then(|number| in_unit_of(old, number, 17));
-        let mut value = in_unit.unwrap_or(value);
         *value.decor_mut() = old.decor().clone();
         *old = value;
     } else {
@@ -128,21 +135,25 @@ fn set(table: &mut dyn TableLike, key: &str, value: Value) {
     }
 }
 
-/// Returns a number in the unit of an old value, if that has one: `"50*mm"` after `"40*mm"`. It is
-/// rounded to twelve digits where these are enough, otherwise to `digits`.
+/// Returns a number in the unit of an old value, if that has one: `"50*mm"` after `"40*mm"`.
 fn in_unit_of(old: &Value, value: f64, digits: usize) -> Option<Value> {
-    /// Units in the last place of the value by which product and quotient can miss it.
-    const NEAR: f64 = 4.0 * f64::EPSILON;
     let (number, unit) = old.as_str()?.split_once('*')?;
     number.trim().parse::<f64>().ok()?;
     let factor = constant(unit.trim())?;
+    let number = quotient(value, factor, digits);
+    Some(format!("{number}*{}", unit.trim()).into())
+}
+
+/// Returns a value in units of a factor. It is rounded to twelve digits where these give the value
+/// to rounding, otherwise to `digits`.
+fn quotient(value: f64, factor: f64, digits: usize) -> f64 {
+    /// Units in the last place of the value by which product and quotient can miss it.
+    const NEAR: f64 = 4.0 * f64::EPSILON;
     let number = value / factor;
-    let round = rounded(number, 12);
     let is_near = |number: &f64| (number * factor - value).abs() <= NEAR * value.abs();
-    let shown = Some(round)
+    Some(rounded(number, 12))
         .filter(is_near)
-        .unwrap_or_else(|| rounded(number, digits));
-    Some(format!("{shown}*{}", unit.trim()).into())
+        .unwrap_or_else(|| rounded(number, digits))
 }
 
 #[cfg(test)]

@@ -242,6 +242,22 @@ fn values_keep_their_units() {
 }
 
 #[test]
+fn numbers_without_units_have_the_digits_that_they_need() {
+    let text = FOUR_BAR.replace("start = \"60*deg\"", "start = 1, max = \"60*deg\"");
+    assert_ne!(text, FOUR_BAR);
+    let mut session = open(&text);
+    // 0.7999999999999999
+    session.drive(DriverId(0), 0.1 + 0.7);
+    let text = session.text().expect("the file was read");
+    assert!(text.contains("start = 0.8,"), "{text}");
+    // Twelve digits of the stop would be beyond it.
+    session.drive(DriverId(0), FRAC_PI_3);
+    let text = session.text().expect("the file was read");
+    let start = format!("start = {FRAC_PI_3},");
+    assert!(text.contains(&start), "{text}");
+}
+
+#[test]
 fn time_runs_both_ways() {
     let text = FOUR_BAR.replace("start = \"60*deg\"", "motion = \"60*deg + 2*t\"");
     let mut session = open(&text);
