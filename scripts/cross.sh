@@ -48,6 +48,11 @@ cross_setup() { # PLATFORM...
             fail "no linker for Windows" "Install mingw-w64 (Debian: gcc-mingw-w64-x86-64-win32)."
         ;;
     esac
+    case " $* " in *darwin*)
+        [ -n "$(lld_program)" ] || { can_apt && apt_install lld; } ||
+            fail "no linker for macOS" "Install lld, or Rust by rustup."
+        ;;
+    esac
     case " $* " in *' darwin64 '*)
         [ -n "$(lipo_program)" ] || { can_apt && apt_install "$LLVM_PACKAGE"; } ||
             fail "no lipo to join the libraries of macOS" "Install LLVM (Debian: $LLVM_PACKAGE)."
@@ -81,6 +86,21 @@ lipo_program() {
     done
 }
 
+# Makes a folder with what lld needs to know of macOS. zig's libSystem names processors that lld does
+# not know; those of Apple silicon have the same symbols.
+macos_libraries() { # FOLDER
+    local name
+    mkdir -p "$1/usr/lib"
+    sed -E 's/arm64e(\.x1)?-/arm64-/g' \
+        "$CROSS_TOOLS"/lib/python3*/site-packages/ziglang/lib/libc/darwin/libSystem.tbd >"$1/usr/lib/libSystem.tbd"
+    for name in c m; do
+        ln -sf libSystem.tbd "$1/usr/lib/lib$name.tbd"
+    done
+    # The standard library names it and does not use it.
+    printf '%s\n' '--- !tapi-tbd' 'tbd-version: 4' 'targets: [ x86_64-macos, arm64-macos ]' \
+        'install-name: /usr/lib/libiconv.2.dylib' '...' >"$1/usr/lib/libiconv.tbd"
+}
+
 # Prints the folder of the sources of Debian's standard library, nothing if they or its cargo are
 # not there.
 std_sources() {
@@ -105,7 +125,9 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
     unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS
     # Only tests need the standard's headers.
     export BIELA_FMI_HEADERS=
-    local rustc=rustc sources build_std=() directory
+    local rustc=rustc sources build_std=() directory lld
+    # Before Debian's compiler comes first on the path.
+    lld=$(lld_program)
     directory=$(cross_folder)
     sources=$(std_sources)
     if [ -n "$sources" ]; then
@@ -130,9 +152,19 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
     *-linux-gnu) [ "$builder" != 'cargo zigbuild' ] || named=$target.$GLIBC ;;
     *-apple-darwin)
         # Stripped by the linker: its signature comes after.
-        export CARGO_PROFILE_RELEASE_STRIP=none MATURIN_STRIP=false SDKROOT=$CARGO_TARGET_DIR
-        flag "-Clink-arg=-Wl,-s"
-        flag "-Clink-arg=-Wl,-install_name,@rpath/biela.dylib"
+        export CARGO_PROFILE_RELEASE_STRIP=none MATURIN_STRIP=false
+        if [ "$builder" = 'cargo zigbuild' ]; then
+            builder='cargo build'
+            export SDKROOT=$CARGO_TARGET_DIR/macos
+            macos_libraries "$SDKROOT"
+            flag "-Clinker=$lld"
+            flag "-Clinker-flavor=ld64.lld"
+            flag "-Clink-args=-S -x -dead_strip_dylibs -install_name @rpath/biela.dylib"
+        else
+            export SDKROOT=$CARGO_TARGET_DIR
+            flag "-Clink-arg=-Wl,-s"
+            flag "-Clink-arg=-Wl,-install_name,@rpath/biela.dylib"
+        fi
         ;;
     *-windows-gnu)
         local objects=$CARGO_TARGET_DIR/windows-crt

@@ -22,6 +22,13 @@ fail() {
 
 has() { command -v "$1" >/dev/null 2>&1; }
 
+# Prints the linker lld, of rustup's toolchain or of the system, nothing if there is none.
+lld_program() {
+    local lld
+    lld=$(rustc --print sysroot)/lib/rustlib/$(rustc -vV | sed -n 's/^host: //p')/bin/rust-lld
+    if [ -x "$lld" ]; then echo "$lld"; else command -v rust-lld || command -v lld || true; fi
+}
+
 # Whether packages of Debian can be installed here.
 can_apt() { has apt-get && [ "$(id -u)" = 0 ]; }
 

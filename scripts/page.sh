@@ -70,9 +70,8 @@ say "building the solver of the $name; the first time this takes some minutes"
 if has_target rustc; then
     RUSTFLAGS="$flags" cargo "${arguments[@]}"
 else
-    linker=$(rustc --print sysroot)/lib/rustlib/$(rustc -vV | sed -n 's/^host: //p')/bin/rust-lld
-    [ -x "$linker" ] || linker=$(command -v rust-lld || command -v wasm-ld) ||
-        fail "no linker for WebAssembly" "Install lld, or Rust by rustup."
+    linker=$(lld_program)
+    [ -n "$linker" ] || fail "no linker for WebAssembly" "Install lld, or Rust by rustup."
     say "using $(/usr/bin/rustc --version), with a standard library built here"
     RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 RUSTFLAGS="$flags" \
         CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=$linker \

@@ -78,8 +78,4 @@ def macho(library):
         used = [line.split()[0] for line in used if line.strip() and "@rpath" not in line]
         expect(all(name.startswith("/usr/lib/") for name in used), f"{library} needs {used}")
         needs.append(f"{processor}: macOS {oldest}, {signed}, {', '.join(Path(u).name for u in used)}")
-    # A name of the standard library for exceptions, and two by which zig's linker, which takes no
-    # list of exports, names the start of the file. Symbols of macOS are looked up by library.
-    exports -= {"rust_eh_personality", "__rust_alloc_error_handler_should_panic"}
-    exports -= {"__dso_handle", "_mh_dylib_header"}
-    return {name for name in exports if not name.startswith("_R")}, "; ".join(needs)
+    return exports, "; ".join(needs)
