@@ -73,7 +73,8 @@ fn build(folder: &Path) {
         .args(["build", "--quiet", "--locked"])
         .args(["--package", "biela", "--example", "biela_runtime"]);
     let mut target = folder.parent().expect("cargo builds in `target`");
-    if !target.join("CACHEDIR.TAG").exists() {
+    // Cargo writes it into each target folder, its tag only into those that it made.
+    if !target.join(".rustc_info.json").exists() {
         command.arg("--target").args(target.file_name());
         target = target.parent().expect("cargo builds in `target`");
     }
