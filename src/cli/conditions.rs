@@ -12,9 +12,9 @@ use super::signals::Signals;
 use crate::fmi;
 use crate::kinematics::{self, Solver};
 use crate::mechanism::{
-    Dimension, DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Order, Parameter,
-    ParameterId, Unit, Variable, help, is_plain, large_angle, large_length, large_velocity,
-    not_finite, quoted, shown,
+    Dimension, Driver, DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Order,
+    Parameter, ParameterId, Unit, Variable, help, is_plain, large_angle, large_length,
+    large_velocity, not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
@@ -64,7 +64,13 @@ impl Conditions {
         let force_inputs = mechanism.force_inputs();
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
         let names = names.chain(force_inputs.iter().map(|input| input.name.as_str()));
-        for (index, text) in DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>())? {
+        let others: Vec<&str> = mechanism
+            .parameters
+            .iter()
+            .map(|p| p.name.as_str())
+            .collect();
+        let assignments = DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>(), &others)?;
+        for (index, text) in assignments {
             if let Some(input) = index.checked_sub(drivers).map(|k| &force_inputs[k]) {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
@@ -147,7 +153,14 @@ impl Conditions {
         let starts = mechanism.starts_of_freedoms();
         let names = mechanism.parameters.iter().map(|p| p.name.as_str());
         let names = names.chain(starts.iter().map(|(name, ..)| name.as_str()));
-        SET.assignments(&self.set, &names.collect::<Vec<_>>())
+        let is_driven = |driver: &&Driver| !matches!(driver.source, DriverSource::Free { .. });
+        let drivers = mechanism.drivers.iter().filter(is_driven);
+        let drivers = drivers.map(|driver| driver.name.as_str());
+        SET.assignments(
+            &self.set,
+            &names.collect::<Vec<_>>(),
+            &drivers.collect::<Vec<_>>(),
+        )
     }
 
     /// Returns the starts of freedoms that are set \[SI\].
@@ -275,25 +288,31 @@ struct Assigning {
     option: &'static str,
     kind: &'static str,
     example: &'static str,
+    /// Kind of the names that another option assigns to, and that option.
+    other: [&'static str; 2],
 }
 
 const SET: Assigning = Assigning {
     option: "--set",
     kind: "parameter",
     example: "crank_length=120*mm",
+    other: ["driver", "--drive"],
 };
 const DRIVE: Assigning = Assigning {
     option: "--drive",
     kind: "driver",
     example: "crank_angle=60*deg + 10*t",
+    other: ["parameter", "--set"],
 };
 
 impl Assigning {
-    /// Splits each `NAME=EXPRESSION` into the name's index in `names` and the expression.
+    /// Splits each `NAME=EXPRESSION` into the name's index in `names` and the expression; another
+    /// option assigns to the names `others`.
     fn assignments<'a>(
         &self,
         given: &'a [String],
         names: &[&str],
+        others: &[&str],
     ) -> Result<Vec<(usize, &'a str)>, Error> {
         let (option, example) = (self.option, self.example);
         let mut assignments: Vec<(usize, &str)> = Vec::new();
@@ -305,13 +324,25 @@ impl Assigning {
             };
             let name = name.trim();
             let index = names.iter().position(|known| *known == name);
-            let index = index.ok_or_else(|| unknown(option, self.kind, name, names))?;
+            let index = index.ok_or_else(|| self.unknown(name, names, others))?;
             if assignments.iter().any(|(known, _)| *known == index) {
                 return Err(Error::Usage(format!("{option}: `{name}` is given twice")));
             }
             assignments.push((index, text.trim()));
         }
         Ok(assignments)
+    }
+
+    /// Returns the error of an unknown name, which may belong to another option.
+    fn unknown(&self, name: &str, names: &[&str], others: &[&str]) -> Error {
+        let (option, kind, [other, right]) = (self.option, self.kind, self.other);
+        let owner = name.split('.').next().unwrap_or(name);
+        if others.contains(&owner) {
+            let message =
+                format!("{option}: no {kind} `{name}`; `{owner}` is a {other}: use {right}");
+            return Error::Usage(message);
+        }
+        unknown(option, kind, name, names)
     }
 
     fn refuse(&self, text: &str, error: &ExpressionError) -> Error {

@@ -29,7 +29,16 @@ impl Input {
         path: &FilePath,
         show: impl FnOnce(&Source, &[Diagnostic]),
     ) -> Result<Self, Error> {
-        let source = Source::open(path.display().to_string(), path).map_err(Error::read(path))?;
+        let source = Source::open(path.display().to_string(), path).map_err(|error| {
+            let named = format!("{}.toml", path.display());
+            match FilePath::new(&named).is_file() {
+                true => Error::Usage(format!(
+                    "cannot read `{}`: {error}; did you mean `{named}`?",
+                    path.display()
+                )),
+                false => Error::read(path)(error),
+            }
+        })?;
         let (mechanism, diagnostics) = match Mechanism::parse(&source) {
             Ok((mechanism, warnings)) => (Ok(mechanism), warnings),
             Err(errors) => (Err(Error::Diagnosed), errors),

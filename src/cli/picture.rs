@@ -19,6 +19,17 @@ const PLOT_WIDTH: u32 = 800;
 /// Width of a PNG in pixels: sharp on most screens and on paper.
 const PNG_WIDTH: u32 = 1600;
 
+/// Checks that the file of a page is called like one.
+pub(super) fn check_page(path: &Path) -> Result<(), Error> {
+    if is_stdout(path) || matches!(&*extension(path), "html" | "htm") {
+        return Ok(());
+    }
+    Err(Error::Usage(format!(
+        "`{}` has neither the extension .html nor .htm",
+        path.display()
+    )))
+}
+
 impl Format {
     /// Returns the format of a file; `-` is SVG.
     pub(super) fn of(path: &Path) -> Result<Self, Error> {

@@ -8,17 +8,23 @@ use crate::mechanism::{Mechanism, Simulation, shown};
 /// Largest number of rows; more are a slip in --step.
 const MOST_ROWS: f64 = 1e9;
 
+/// Reads a time of the command line.
+fn seconds(text: &str) -> Result<f64, String> {
+    let error = |_| "expected a number of seconds, such as 0.5".to_owned();
+    text.parse().map_err(error)
+}
+
 /// Options of all commands that run a mechanism.
 #[derive(Args, Debug)]
 pub(super) struct Span {
     /// Start time in seconds [default: the file's].
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     start: Option<f64>,
     /// Stop time in seconds [default: the file's].
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     stop: Option<f64>,
     /// Time between rows in seconds [default: the file's].
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     step: Option<f64>,
 }
 

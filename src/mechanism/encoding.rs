@@ -15,6 +15,8 @@ pub(super) enum NotUtf8 {
     },
     /// The byte order mark of UTF-16.
     Utf16,
+    /// The start of a ZIP archive.
+    Zip,
 }
 
 impl NotUtf8 {
@@ -22,7 +24,7 @@ impl NotUtf8 {
     pub(super) fn span(self) -> Range<usize> {
         match self {
             Self::Byte { offset, .. } => offset..offset + char::REPLACEMENT_CHARACTER.len_utf8(),
-            Self::Utf16 => 0..0,
+            Self::Utf16 | Self::Zip => 0..0,
         }
     }
 }
@@ -35,6 +37,17 @@ impl Display for NotUtf8 {
                 "is not UTF-8: on line {line} the byte 0x{byte:02X} begins no character of it"
             ),
             Self::Utf16 => write!(f, "is UTF-16, not UTF-8"),
+            Self::Zip => write!(f, "is a ZIP archive, not text"),
+        }
+    }
+}
+
+impl NotUtf8 {
+    /// Returns help.
+    pub(super) fn help(self) -> &'static str {
+        match self {
+            Self::Byte { .. } | Self::Utf16 => "save it as UTF-8",
+            Self::Zip => "an FMU has its mechanism file in its folder `resources`",
         }
     }
 }
@@ -50,6 +63,9 @@ pub(super) fn decode(bytes: Vec<u8>) -> (String, Option<NotUtf8>) {
         let units = bytes[2..].chunks_exact(2);
         let units: Vec<u16> = units.map(|pair| unit([pair[0], pair[1]])).collect();
         return (String::from_utf16_lossy(&units), Some(NotUtf8::Utf16));
+    }
+    if bytes.starts_with(b"PK\x03\x04") {
+        return (String::new(), Some(NotUtf8::Zip));
     }
     String::from_utf8(bytes).map_or_else(
         |error| {

@@ -102,10 +102,10 @@ impl<'a, T: Copy> NameTable<'a, T> {
         self.meanings.get(name).copied()
     }
 
-    /// Returns help for a name that is neither in the table nor among `further` legal ones: the
-    /// nearest of all these, otherwise the table's names if they are few.
-    pub(super) fn help(&self, name: &str, further: &[&str]) -> Option<String> {
-        help(name, &self.candidates()?, further)
+    /// Returns help for a name that is not in the table: the nearest one, otherwise all if they are
+    /// few.
+    pub(super) fn help(&self, name: &str) -> Option<String> {
+        help(name, &self.candidates()?, &[])
     }
 
     /// Returns help for such a name, if one of the table or of `further` is near.
@@ -245,8 +245,8 @@ mod tests {
     fn suggestions_are_bounded_in_number() {
         let table: NameTable<()> = [("crank", ())].into_iter().collect();
         for _ in 0..MAX_SUGGESTIONS {
-            assert!(table.help("cranc", &[]).is_some());
+            assert!(table.help("cranc").is_some());
         }
-        assert_eq!(table.help("cranc", &[]), None);
+        assert_eq!(table.help("cranc"), None);
     }
 }

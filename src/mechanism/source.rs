@@ -112,7 +112,11 @@ impl Source {
         if std::fs::metadata(&path)?.is_file() {
             let (text, fault) = decode(read_bounded(&path, LARGEST_TABLE)?);
             fault.map_or(Ok(text), |fault| {
-                let why = format!("it {fault}; save it as UTF-8");
+                let help = match fault {
+                    NotUtf8::Zip => "save the sheet as CSV",
+                    _ => fault.help(),
+                };
+                let why = format!("it {fault}; {help}");
                 Err(io::Error::new(io::ErrorKind::InvalidData, why))
             })
         } else {

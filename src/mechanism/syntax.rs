@@ -29,7 +29,7 @@ pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Span>), Diagnosti
         return Err(
             Diagnostic::error(code::NOT_UTF_8, format!("the file {fault}"))
                 .label(fault.span(), "")
-                .help("save it as UTF-8".to_owned()),
+                .help(fault.help().to_owned()),
         );
     }
     let (document, errors) = DeTable::parse_recoverable(source.text());

@@ -36,6 +36,8 @@ pub(super) fn syntax_error(text: &str, span: Span, message: &str) -> Diagnostic 
     let slip = (!has_long_strings)
         .then(|| missing_quote(line))
         .flatten()
+        .or_else(|| foreign_letter(line, at))
+        .or_else(|| round_brackets(line, at))
         .or_else(|| decimal_comma(line, at))
         .or_else(|| bare_value(line, at, message))
         .or_else(|| missing_mark(line, at, message));
@@ -145,11 +147,50 @@ fn missing_quote(line: &str) -> Option<Slip> {
         .next()
         .unwrap_or_default()
         .trim_end();
+    // A quote of the other kind was meant to close it.
+    let other = if line[start..].starts_with('"') {
+        '\''
+    } else {
+        '"'
+    };
+    let inside = content.strip_suffix(other).unwrap_or(content);
     Some((
         start..start + 1 + content.len(),
         "this string has no closing quote".to_owned(),
-        (!content.is_empty()).then(|| write_quoted(content)),
+        (!inside.is_empty()).then(|| write_quoted(inside)),
     ))
+}
+
+/// Finds a letter that names do not have, in a key or in the name of a table.
+fn foreign_letter(line: &str, at: usize) -> Option<Slip> {
+    let letter = line[at..].chars().next()?;
+    let is_foreign = letter.is_alphabetic() && !letter.is_ascii();
+    let is_header = line.trim_start().starts_with('[') && !line[..at].contains('=');
+    let rest = line[at..].trim_start_matches(|c: char| c.is_alphanumeric() || "_-.".contains(c));
+    (is_foreign && (is_header || rest.trim_start().starts_with('='))).then(|| {
+        (
+            at..at + letter.len_utf8(),
+            "a name has the letters a to z, digits and `_`".to_owned(),
+            Some(format!("write it without `{letter}`")),
+        )
+    })
+}
+
+/// Finds an array that has round brackets.
+fn round_brackets(line: &str, at: usize) -> Option<Slip> {
+    let start = line[..at].rfind('=')? + 1;
+    let value = line[start..].trim_start();
+    let start = line.len() - value.len();
+    let end = value.find(')')?;
+    let inside = value[..end].strip_prefix('(')?;
+    // An expression between brackets has none of its own.
+    (inside.contains(',') && !inside.contains('(')).then(|| {
+        (
+            start..start + end + 1,
+            "an array has square brackets".to_owned(),
+            Some(format!("write {}", quoted(&format!("[{inside}]")))),
+        )
+    })
 }
 
 fn write_quoted(text: &str) -> String {
@@ -208,6 +249,16 @@ fn bare_value(line: &str, at: usize, message: &str) -> Option<Slip> {
                 format!("write `{word}`"),
             );
         }
+    }
+    if ["yes", "no", "on", "off"].contains(&&*value.to_ascii_lowercase()) {
+        let message = "such a value is `true` or `false`, without quotes";
+        return Some((place, message.to_owned(), None));
+    }
+    if let Some(value) = value.strip_suffix(';') {
+        return slip(
+            "a line ends without a semicolon",
+            format!("write `{value}`"),
+        );
     }
     let curly = ['“', '”', '„', '‘', '’', '«', '»'];
     if value.starts_with(curly) {
@@ -284,8 +335,11 @@ fn missing_mark(line: &str, at: usize, message: &str) -> Option<Slip> {
     let next = line[at..].chars().next();
     let place = at..at + next.map_or(0, char::len_utf8);
     let is_about = |words: &str| message.contains(words);
-    let (message, help) = if line.trim_start().starts_with("//") {
+    let begins = |mark: &&str| line.trim_start().starts_with(*mark);
+    let (message, help) = if ["//", "/*", "--", "%", ";"].iter().any(begins) {
         ("a comment begins with `#`", None)
+    } else if next == Some(';') {
+        ("a line ends without a semicolon", None)
     } else if is_about("unclosed inline table") || (is_about("missing comma") && next == Some(']'))
     {
         ("a `}` is missing here", None)

@@ -120,6 +120,16 @@ fn slips_of_syntax_are_answered_as_reviewed() {
         "[bodies.crank]\nestimate = [0, 0, 0\nmass = 1",
         "[bodies.crank]\nmarkers = { O = [0, 0],\n  A = [1, 0]\n  B = [2, 0] }",
         "// a comment",
+        "% a comment",
+        "[bodies.kürbel]",
+        "kürbel = 1",
+        "mass = 0.5;",
+        "name = \"rod\";",
+        "estimate = (0.05, 0.09, \"20*deg\")",
+        "estimate = (0.05, 0.09, 0)",
+        "mass = (1 + 2)*3",
+        "tunable = yes",
+        "start = \"60*deg'",
         "A = { markers = [\"ground.O\", \"crank.O] }\nB = { markers = [\"crank.B\", \"rod.B\"] }",
     ];
     let answers = slips.map(|slip| {

@@ -10,6 +10,7 @@ use crate::cli::input_files::InputFiles;
 use crate::cli::live;
 use crate::cli::output::{tell_written, write};
 use crate::cli::page_solver::{self, Solver};
+use crate::cli::picture::check_page;
 use crate::cli::stdout::is_stdout;
 
 /// Write a page on which a mechanism is moved by hand.
@@ -41,6 +42,7 @@ pub(in crate::cli) struct Page {
 
 impl Page {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
+        self.output.as_deref().map_or(Ok(()), check_page)?;
         let input = Input::read(&self.file)?;
         let path = self
             .output

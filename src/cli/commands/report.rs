@@ -14,6 +14,7 @@ use crate::cli::error::Error;
 use crate::cli::input::{Input, misfits};
 use crate::cli::input_files::InputFiles;
 use crate::cli::output::{tell_written, write};
+use crate::cli::picture::check_page;
 use crate::drawing::animation::fill;
 use crate::drawing::svg::{self, escape};
 use crate::drawing::{Diagram, Sheet};
@@ -53,6 +54,7 @@ pub(in crate::cli) struct Report {
 
 impl Report {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
+        self.output.as_deref().map_or(Ok(()), check_page)?;
         let input = Input::read(&self.file)?;
         let name = &input.mechanism.name;
         let path = self

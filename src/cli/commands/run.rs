@@ -96,6 +96,7 @@ impl Run {
         }
         let format = self.plot.as_deref().map(Format::of).transpose()?;
         self.check_page()?;
+        self.check_output()?;
         let input = Input::read(&self.file)?;
         if self.forces {
             input.check_dynamics()?;
@@ -216,6 +217,17 @@ impl Run {
             progress.done(row);
         }
         Ok(())
+    }
+
+    /// Refuses a table for a spreadsheet in a format that is not written.
+    fn check_output(&self) -> Result<(), Error> {
+        match &self.output {
+            Some(path) if matches!(&*extension(path), "xls" | "ods") => Err(Error::Usage(format!(
+                "`{}` would be CSV: an Excel file has the extension .xlsx",
+                path.display()
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// Refuses a page whose name is neither that of a page nor that of a picture.

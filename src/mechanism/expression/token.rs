@@ -123,6 +123,10 @@ fn scan_number(text: &str, start: usize) -> Result<(TokenKind<'_>, usize), Expre
     Ok((TokenKind::Number(value), end))
 }
 
+/// Help for a choice between values.
+pub(super) const CHOICE: &str =
+    "choose by `min`, `max` and `sign`: `max(sign(t - 1), 0)` is 1 after t = 1, and 0 before";
+
 fn unexpected_character(text: &str, start: usize) -> ExpressionError {
     let character = text[start..].chars().next().unwrap_or(' ');
     let error = ExpressionError::new(
@@ -139,6 +143,7 @@ fn unexpected_character(text: &str, start: usize) -> ExpressionError {
         '³' => "^3",
         '[' | '{' => "(",
         ']' | '}' => ")",
+        '<' | '>' | '?' => return error.help(CHOICE),
         _ => return error,
     };
     error.help(format!("write `{right}`"))

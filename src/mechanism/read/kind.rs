@@ -4,6 +4,8 @@ use std::collections::HashSet;
 use std::hash::Hash;
 use std::marker::PhantomData;
 
+use toml::de::DeValue;
+
 use crate::mechanism::Span;
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names;
@@ -351,7 +353,16 @@ impl<'a> Context<'a> {
     ) -> Option<Fields<'a>> {
         let table = value.get_ref().as_table();
         if table.is_none() {
-            self.wrong_type(value, "a table");
+            let help = match value.get_ref() {
+                DeValue::String(_) if subject.starts_with("measure ") => {
+                    Some("a formula is written `{ value = \"crank.phi/2\" }`")
+                }
+                DeValue::Array(_) if subject.is_empty() => {
+                    Some("each thing has a name: `[bodies.crank]`, not `[[bodies]]`")
+                }
+                _ => None,
+            };
+            self.wrong_type(value, "a table").help = help.map(str::to_owned);
         }
         Some(Fields {
             table: table?,

@@ -28,6 +28,7 @@ mod limits;
 mod motion;
 mod names;
 mod number;
+mod other_words;
 mod parameter;
 mod placed;
 mod plausible;

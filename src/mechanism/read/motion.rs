@@ -1,7 +1,5 @@
 //! Prescribed motions: expressions of time, and tables.
 
-use toml::de::DeValue;
-
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::motion::not_finite;
 use crate::mechanism::wording::shown;
@@ -71,20 +69,12 @@ impl<'a> Kind<'a> for PrescribedMotion {
     type Value = ReadMotion;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<ReadMotion> {
-        let not_a_motion = match item.value.get_ref() {
-            DeValue::Array(_) => Some("an array of points is no motion by itself"),
-            DeValue::String(text) if text.ends_with(".csv") => {
-                Some("the name of a file is no motion by itself")
-            }
-            _ => None,
-        };
-        if let Some(message) = not_a_motion {
-            context
-                .error(code::WRONG_TYPE, item.span(), message)
-                .suggest(
-                    "expected `motion = \"10*deg*t\"`, `motion = { table = [[0, 0], [1, 2]] }` or \
-                 `motion = { file = \"a.csv\" }`",
-                );
+        if context.is_points_alone(
+            item,
+            "motion",
+            "expected `motion = \"10*deg*t\"`, `motion = { table = [[0, 0], [1, 2]] }` or `motion = \
+             { file = \"a.csv\" }`",
+        ) {
             return None;
         }
         let course = if item.value.get_ref().is_table() {

@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
+use toml::de::DeValue;
+
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::table::MOST_POINTS;
 use crate::mechanism::wording::{quoted, shown, shown_apart};
@@ -30,11 +32,12 @@ table! {
         /// Names of the file's two columns; its first two if left out.
         columns: [&'a str; 2] = Array::new("[\"x\", \"y\"]", [ExternalName, ExternalName]),
         /// Factors of the two columns.
-        scale: [Quantity; 2] = POINT,
+        scale: [Quantity; 2] = FACTORS,
     }
 }
 
 const POINT: Array<Number, 2> = Array::new("[x, y]", [NUMBER; 2]);
+const FACTORS: Array<Number, 2> = Array::new("[1, \"deg\"]", [NUMBER; 2]);
 
 /// Array of points.
 struct Points;
@@ -88,6 +91,25 @@ impl<'a> Kind<'a> for Points {
 }
 
 impl<'a> Context<'a> {
+    /// Reports points, or the name of a file, that stand alone where a table has to name them;
+    /// returns whether they do.
+    pub(super) fn is_points_alone(
+        &mut self,
+        item: &Item<'_, 'a>,
+        noun: &str,
+        expected: &str,
+    ) -> bool {
+        let what = match item.value.get_ref() {
+            DeValue::Array(_) => "an array of points",
+            DeValue::String(text) if text.ends_with(".csv") => "the name of a file",
+            _ => return false,
+        };
+        let message = format!("{what} is no {noun} by itself");
+        self.error(code::WRONG_TYPE, item.span(), message)
+            .suggest(expected);
+        true
+    }
+
     /// Reads the points under `table`, or of the CSV file under `file`, whose abscissas rise with
     /// the file's parameters.
     pub(super) fn points(&mut self, keys: PointKeys<'a>) -> Option<PointTable> {
@@ -292,11 +314,15 @@ impl<'a> Context<'a> {
                 "{}the last point, at {end} deg, is not within the turn that starts at {start} deg",
                 table.line(last)
             );
-            self.error(code::BAD_TABLE, table.span(last), message)
-                .suggest(
+            let help = match table.has_scale {
+                true => {
                     "angles go once round: the last point is joined to the first, and only that \
-                     one may be repeated",
-                );
+                     one may be repeated"
+                }
+                false => "angles go once round, in radians: degrees have `scale = [\"deg\", 1]`",
+            };
+            self.error(code::BAD_TABLE, table.span(last), message)
+                .suggest(help);
             return None;
         }
         Some(())

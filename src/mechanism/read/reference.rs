@@ -1,6 +1,7 @@
 //! References to bodies and markers by their names.
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::names;
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{BodyId, MarkerId, Span};
@@ -8,7 +9,7 @@ use crate::mechanism::{BodyId, MarkerId, Span};
 use super::context::{Context, GROUND};
 #[cfg(feature = "cli")]
 use super::kind::NAME;
-use super::kind::{Array, Item, Kind, schema};
+use super::kind::{Array, Item, Kind, schema, word_here};
 
 /// Example of `markers`, for help where they are missing.
 pub(super) const MARKERS: &str = "[\"ground.O\", \"crank.O\"]";
@@ -45,7 +46,7 @@ impl<'a> Kind<'a> for MarkerName {
         let marker = table.get(marker_name);
         if marker.is_none() {
             let message = format!("no marker {} on {}", quoted(marker_name), quoted(body_name));
-            let help = table.help(marker_name, &[]);
+            let help = table.help(marker_name);
             context
                 .error(code::UNKNOWN_MARKER, marker_span, message)
                 .help = help;
@@ -74,7 +75,7 @@ impl<'a> Kind<'a> for MarkerPair {
             let message = format!("both markers of {subject} are on {body}");
             context
                 .error(code::SAME_BODY, item.span(), message)
-                .suggest("a coordinate is measured between two bodies, or ground and a body");
+                .suggest("the two are on different bodies, of which one may be `ground`");
             return None;
         }
         Some(markers)
@@ -129,7 +130,7 @@ impl<'a> Kind<'a> for HolderName {
         let place = context.holders.get(name);
         if place.is_none() {
             let message = format!("no joint or constraint {}", quoted(name));
-            let help = context.holders.help(name, &[]);
+            let help = context.holders.help(name);
             context
                 .error(code::UNKNOWN_REACTION, item.span(), message)
                 .help = help;
@@ -145,7 +146,13 @@ impl Context<'_> {
     fn body_at(&mut self, name: &str, span: Span, further: &[&str]) -> Option<BodyId> {
         let body = self.bodies.get(name);
         if body.is_none() {
-            let help = self.bodies.help(name, further);
+            let help = match name.to_ascii_lowercase().as_str() {
+                "frame" | "world" | "base" | "fixed" if further.contains(&GROUND) => {
+                    Some(word_here(GROUND))
+                }
+                _ => (self.bodies.candidates())
+                    .and_then(|known| names::help(name, &[known, further.to_vec()].concat(), &[])),
+            };
             let message = format!("no body {}", quoted(name));
             self.error(code::UNKNOWN_BODY, span, message).help = help;
         }

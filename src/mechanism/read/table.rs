@@ -14,6 +14,7 @@ use crate::mechanism::{Expression, Span};
 use super::context::Context;
 use super::kind::{Described, Entry, Fields, Item, Kind};
 use super::number::Quantity;
+use super::other_words;
 
 /// Key of a table.
 pub(super) struct Key {
@@ -208,10 +209,6 @@ pub(super) const fn key_name(identifier: &'static str) -> &'static str {
     }
 }
 
-/// Help for a key that other programs have in their joints.
-const FRICTION: &str = "friction has a section of its own: `[friction]` with \
-                        `pin = { joint = \"A\", coefficient = 0.1, radius = \"8*mm\" }`";
-
 impl<'a> Context<'a> {
     /// Reads a table; reports unknown, missing and conflicting keys.
     pub(super) fn table<T: Keys<'a>>(&mut self, fields: &Fields<'a>) -> T {
@@ -228,17 +225,19 @@ impl<'a> Context<'a> {
     /// Reports unknown and conflicting keys.
     fn check_keys<T: Keys<'a>>(&mut self, fields: &Fields<'a>) {
         let known: Vec<&'static str> = T::keys().iter().map(|key| key.name).collect();
-        for key in fields.table.keys() {
+        for (key, value) in fields.table {
             let name: &str = key.get_ref();
             if !known.contains(&name) {
                 let message = format!("unknown key {} in {}", quoted(name), fields.subject);
-                if let Some(meant) = names::nearest(name, &known) {
+                let other = other_words::help(name, value, &known);
+                let near = || {
+                    let near = names::nearest(name, &known).into_iter().collect();
+                    Some((names::help(name, &known, &[])?, near))
+                };
+                let (help, meant) = other.or_else(near).unzip();
+                for meant in meant.into_iter().flatten() {
                     self.misspelt_keys.insert((fields.place.start, meant));
                 }
-                let help = match name {
-                    "friction" => Some(FRICTION.to_owned()),
-                    _ => names::help(name, &known, &[]),
-                };
                 self.error(code::UNKNOWN_KEY, key.span(), message).help = help;
             }
         }
@@ -247,10 +246,14 @@ impl<'a> Context<'a> {
         };
         let (place, has) = match [first, second].map(|name| fields.table.get_key_value(name)) {
             [Some(_), Some((key, _))] => (key.span(), format!("both `{first}` and `{second}`")),
-            [None, None] => (
-                fields.place.clone(),
-                format!("neither `{first}` nor `{second}`"),
-            ),
+            [None, None]
+                if !self.is_misspelt(fields, first) && !self.is_misspelt(fields, second) =>
+            {
+                (
+                    fields.place.clone(),
+                    format!("neither `{first}` nor `{second}`"),
+                )
+            }
             _ => return,
         };
         let message = format!("{} has {has}", fields.subject);
@@ -293,9 +296,14 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// Returns whether another key of the table was probably meant to be this one.
+    fn is_misspelt(&self, fields: &Fields<'a>, name: &'static str) -> bool {
+        self.misspelt_keys.contains(&(fields.place.start, name))
+    }
+
     /// Reports a key that is missing, unless it stands there with a slip.
     pub(super) fn missing_key(&mut self, fields: &Fields<'a>, name: &'static str, example: &str) {
-        if self.misspelt_keys.contains(&(fields.place.start, name)) {
+        if self.is_misspelt(fields, name) {
             return;
         }
         let message = format!("{} has no `{name}`", fields.subject);

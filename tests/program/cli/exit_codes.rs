@@ -147,6 +147,30 @@ fn bad_drivers_and_parameters_exit_with_2() {
             "--set: no parameter `bas`; did you mean `base`?",
         ),
         (
+            &["run", "mechanisms/tlv.toml", "--set", "side_length=1"],
+            "--set: no parameter `side_length`; `side_length` is a driver: use --drive",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--drive", "base=1"],
+            "--drive: no driver `base`; `base` is a parameter: use --set",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--stop", "0,5"],
+            "expected a number of seconds, such as 0.5",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "-o", "motion.xls"],
+            "`motion.xls` would be CSV: an Excel file has the extension .xlsx",
+        ),
+        (
+            &["report", "mechanisms/tlv.toml", "-o", "report.pdf"],
+            "`report.pdf` has neither the extension .html nor .htm",
+        ),
+        (
+            &["check", "mechanisms/tlv"],
+            "did you mean `mechanisms/tlv.toml`?",
+        ),
+        (
             &["run", "mechanisms/tlv.toml", "--set", "base=0"],
             "--set: `base` cannot be set to 0: expected at least 0.001 m",
         ),

@@ -6,7 +6,7 @@ use crate::mechanism::expression::Variable;
 use crate::mechanism::expression::error::ExpressionError;
 use crate::mechanism::expression::function::{CONSTANTS, FUNCTIONS};
 use crate::mechanism::expression::reserved::is_taken;
-use crate::mechanism::expression::token::{Token, TokenKind};
+use crate::mechanism::expression::token::{CHOICE, Token, TokenKind};
 use crate::mechanism::names;
 use crate::mechanism::synonym::in_our_words;
 use crate::mechanism::wording::quoted;
@@ -29,7 +29,11 @@ impl Parser<'_> {
             Some(token) if token.kind != TokenKind::Symbol(b')') => &self.text[token.span()],
             _ => "(…)",
         };
-        let right = if found == "(" { "(…)" } else { found };
+        let right = match found {
+            "(" => "(…)",
+            "in" => "inch",
+            _ => found,
+        };
         if left.len() + right.len() > 40 {
             return error.help("multiplication is written out");
         }
@@ -77,6 +81,7 @@ impl Parser<'_> {
             {
                 return error.help("give the coupling the function: add `law = …`");
             }
+            let name = without_module(name);
             return match function_help(name) {
                 Some(help) => error.help(help),
                 None => error,
@@ -105,6 +110,10 @@ impl Parser<'_> {
         }
         if name.contains('.') {
             let error = ExpressionError::new(span, format!("no variable {}", quoted(name)));
+            let constant = without_module(name);
+            if CONSTANTS.iter().any(|(known, _)| *known == constant) {
+                return error.help(format!("did you mean `{constant}`?"));
+            }
             let Some(moving) = self.scope.moving else {
                 return error.help("only the `value` of a measure may use variables that move");
             };
@@ -144,7 +153,9 @@ impl Parser<'_> {
         };
         let taken = || self.taken_help(name);
         let near = || {
-            let near = self.scope.parameters.near(name, &constants);
+            let variables = self.scope.variables.iter().map(|own| own.name());
+            let own: Vec<&str> = constants.into_iter().chain(variables).collect();
+            let near = self.scope.parameters.near(name, &own);
             let coordinates = self
                 .scope
                 .moving
@@ -152,19 +163,36 @@ impl Parser<'_> {
             near.or_else(|| coordinates?.known.near(name, &[]))
         };
         let help = self.unit_help(name).or_else(moving).or_else(taken);
-        let own = || match self.scope.variables {
-            [Variable::Argument] => Some("a law is a function of `x`".to_owned()),
+        let polar_angle = match (self.scope.variables, name) {
+            ([Variable::PolarAngle], "phi" | "angle" | "alpha") => {
+                Some("did you mean `theta`?".to_owned())
+            }
             _ => None,
         };
-        let help = help.or_else(near).or_else(own);
+        let own = || match self.scope.variables {
+            [Variable::Argument] => Some("a law is a function of `x`".to_owned()),
+            variables if variables.contains(&Variable::Position) => Some(
+                "give it a value in `[parameters]`; the force's own coordinate is `position`"
+                    .to_owned(),
+            ),
+            _ => None,
+        };
+        let help = help.or(polar_angle).or_else(near).or_else(own);
         error.help(help.unwrap_or_else(|| "give it a value in `[parameters]`".to_owned()))
     }
 
     /// Returns help for a unit's symbol after a number.
     fn unit_help(&self, name: &str) -> Option<String> {
-        let is_unit = ["m", "rad", "s", "kg", "N"].contains(&name);
-        (is_unit && self.scope.parameters.get(name).is_none())
-            .then(|| format!("numbers are in SI units: leave out `{name}`"))
+        if self.scope.parameters.get(name).is_some() {
+            return None;
+        }
+        match name {
+            "m" | "rad" | "s" | "kg" | "N" | "Nm" => {
+                Some(format!("numbers are in SI units: leave out `{name}`"))
+            }
+            "g" => Some("numbers are in SI units: a gram is `0.001`".to_owned()),
+            _ => None,
+        }
     }
 
     /// Returns help for a name that no parameter can have.
@@ -191,11 +219,21 @@ impl Parser<'_> {
     }
 }
 
+/// Returns a name without the module that other languages have it in: `pi` for `math.pi`.
+fn without_module(name: &str) -> &str {
+    match name.split_once('.') {
+        Some(("math" | "Math" | "np" | "numpy", own)) => own,
+        _ => name,
+    }
+}
+
 /// Returns help for an unknown function: the name of the one that other programs call so, or the
 /// nearest name.
 fn function_help(name: &str) -> Option<String> {
     let ours = match name {
         "log" => return Some("`ln` is the natural logarithm, `log10` the decimal one".to_owned()),
+        "if" | "ifelse" | "where" => return Some(CHOICE.to_owned()),
+        "radians" | "deg2rad" | "rad" => return Some("degrees are written `30*deg`".to_owned()),
         "pow" => return Some("a power is written `x^y`".to_owned()),
         "arcsin" => "asin",
         "arccos" => "acos",

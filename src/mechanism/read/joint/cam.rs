@@ -61,6 +61,14 @@ impl<'a> Kind<'a> for Contour {
     type Value = Profile;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Profile> {
+        if context.is_points_alone(
+            item,
+            "profile",
+            "expected `profile = \"0.04 + 0.01*cos(theta)\"`, `profile = { table = [[0, 0.04], …] }` \
+             or `profile = { file = \"a.csv\" }`",
+        ) {
+            return None;
+        }
         let profile = if item.value.get_ref().is_table() {
             let fields = context.fields(item.span(), item.value, "the profile".to_owned())?;
             let keys = context.table::<(PointKeys<'a>, ContourKeys<'a>)>(&fields);
