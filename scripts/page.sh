@@ -21,7 +21,7 @@ name=${1:-page}
 # Usual size, packed, at most [bytes]: each page and each FMU holds the solver of pages.
 case $name in
 page) usual_size=1200000 made_of='page' ;;
-studio) usual_size=1700000 made_of='page studio' ;;
+studio) usual_size=1900000 made_of='page studio' ;;
 *) fail "no solver is called \`$name\`" "It is page or studio." ;;
 esac
 

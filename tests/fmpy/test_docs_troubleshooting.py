@@ -18,7 +18,7 @@ FILES_WITHOUT_MESSAGES = {
     "cli/commands/range.rs": "likewise",
     "cli/commands/platforms.rs": "likewise",
     "cli/documentation.rs": "the page in the FMU",
-    "cli/commands/watch/server.rs": "what a browser is told",
+    "cli/server.rs": "what a browser is told",
     "fmi/mechanism_model/rule.rs": "descriptions in the FMU",
     "fmi/mechanism_model/variables.rs": "likewise",
     "kinematics/results/output.rs": "likewise",
@@ -32,6 +32,10 @@ FILES_WITHOUT_MESSAGES = {
     "exchange/text.rs": "the mechanism file that `import` writes",
     "kinematics/reference.rs": "the oracle of the tests",
 }
+
+WITHOUT_MESSAGES = ("mechanism/", "drawing/", "studio/")
+"""The reader's messages are FILE_MESSAGES; drawing has none. The studio answers at once to what the hand
+does, and says what to do."""
 
 NOT_FOR_PEOPLE = re.compile(
     r"(?:expect|unreachable!|panic!|assert!|debug_assert!)\(\s*$"
@@ -202,7 +206,7 @@ SOURCES = list(sources())
 MESSAGES = [
     literal
     for name, text in SOURCES
-    if not name.startswith(("mechanism/", "drawing/")) and name not in FILES_WITHOUT_MESSAGES
+    if not name.startswith(WITHOUT_MESSAGES) and name not in FILES_WITHOUT_MESSAGES
     for literal in literals(name, text)
     if is_message(literal)
 ]

@@ -40,7 +40,10 @@ WRONG = {
     "unknown-joint-type",
     "unknown-joint-type_coupling",
     "unknown-key",
+    "unknown-key_elsewhere",
     "unknown-key_friction",
+    "unknown-key_other-words",
+    "unknown-key_point",
     "unknown-key_slip",
     "unknown-marker",
     "unknown-unit",
@@ -48,6 +51,8 @@ WRONG = {
     "wheel-sizes",
     "wrong-type",
     "wrong-type_markers",
+    "wrong-type_named",
+    "wrong-type_points",
 }
 
 

@@ -12,7 +12,7 @@ fn solver(folder: &tempfile::TempDir) -> String {
     path.to_str().expect("it is text").to_owned()
 }
 
-/// What the page begins with.
+/// The data that the page begins with.
 fn beginning(page: &str) -> Value {
     let (_, rest) = page
         .split_once("<script type=\"application/json\" id=\"studio-data\">")
