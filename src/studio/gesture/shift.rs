@@ -1,6 +1,7 @@
 //! Points that are moved while the mechanism is designed: its geometry changes.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use serde_json::Value;
 
@@ -25,6 +26,29 @@ impl Through {
             Some("parameter") => Some(Self::Parameter),
             Some("number") => Some(Self::Number),
             _ => None,
+        }
+    }
+}
+
+/// Parts of the text that are replaced together: it is read once for all of them.
+#[derive(Default)]
+struct Parts {
+    replaced: Vec<(Range<usize>, String)>,
+    /// Estimates that the file does not have yet, by the names of their bodies.
+    added: Vec<(String, String)>,
+}
+
+impl Parts {
+    fn replace(&mut self, place: Range<usize>, with: String) {
+        self.replaced.retain(|(other, _)| *other != place);
+        self.replaced.push((place, with));
+    }
+
+    fn write(mut self, editing: &mut Editing) {
+        self.replaced.sort_by_key(|(place, _)| place.start);
+        editing.text.replace_all(&self.replaced);
+        for (body, estimate) in self.added {
+            editing.text.set(&["bodies", &body, "estimate"], &estimate);
         }
     }
 }
@@ -77,13 +101,15 @@ fn move_rounded(
         moved.extend(editing.pinned_to(*marker)?);
     }
     let meant = meant(editing, mechanism, &moved, by, is_rounded);
+    let mut parts = Parts::default();
     for (marker, place) in &meant.inside {
-        set_marker(editing, mechanism, *marker, *place, through)?;
+        set_marker(editing, &mut parts, mechanism, *marker, *place, through)?;
     }
     for (body, frame) in &meant.frames {
-        set_estimate(editing, mechanism, BodyId(*body), *frame);
+        set_estimate(editing, &mut parts, mechanism, BodyId(*body), *frame);
     }
-    set_starts(editing, mechanism, &meant);
+    set_starts(editing, &mut parts, mechanism, &meant);
+    parts.write(editing);
     Ok(())
 }
 
@@ -167,7 +193,8 @@ pub(super) fn ends_of_bar(editing: &Editing, markers: &[MarkerId]) -> Option<[Ma
 }
 
 fn set_marker(
-    editing: &mut Editing,
+    editing: &Editing,
+    parts: &mut Parts,
     mechanism: &Mechanism,
     marker: MarkerId,
     place: [f64; 3],
@@ -185,6 +212,7 @@ fn set_marker(
             if (place[index] - now[index]).abs() > UNCHANGED {
                 set_number(
                     editing,
+                    parts,
                     mechanism,
                     &path,
                     Some(index),
@@ -203,18 +231,23 @@ fn set_marker(
     {
         if (new - old).abs() > UNCHANGED {
             let path: Vec<&str> = path.iter().copied().chain([key]).collect();
-            set_number(editing, mechanism, &path, None, new, through)?;
+            set_number(editing, parts, mechanism, &path, None, new, through)?;
         }
     }
     Ok(())
 }
 
-fn set_estimate(editing: &mut Editing, mechanism: &Mechanism, body: BodyId, frame: [f64; 3]) {
+fn set_estimate(
+    editing: &Editing,
+    parts: &mut Parts,
+    mechanism: &Mechanism,
+    body: BodyId,
+    frame: [f64; 3],
+) {
     let name = &mechanism.bodies[body.index()].name;
     let path = ["bodies", &**name, "estimate"];
     if editing.text.element(&path, 0).is_none() {
-        let estimate = editing.estimate(frame);
-        editing.text.set(&path, &estimate);
+        parts.added.push((name.clone(), editing.estimate(frame)));
         return;
     }
     for (index, value) in frame.into_iter().enumerate() {
@@ -223,13 +256,13 @@ fn set_estimate(editing: &mut Editing, mechanism: &Mechanism, body: BodyId, fram
         };
         let old = editing.text.as_str()[place.clone()].to_owned();
         if let Some(new) = in_place_of(editing, &old, value, index == 2) {
-            editing.text.replace(place, &new);
+            parts.replace(place, new);
         }
     }
 }
 
 /// Lets the drivers start where the mechanism is meant to be.
-fn set_starts(editing: &mut Editing, mechanism: &Mechanism, meant: &Meant) {
+fn set_starts(editing: &Editing, parts: &mut Parts, mechanism: &Mechanism, meant: &Meant) {
     let drawn = editing.drawn;
     let place = |marker: MarkerId| {
         let body = mechanism.markers[marker.index()].body;
@@ -255,17 +288,19 @@ fn set_starts(editing: &mut Editing, mechanism: &Mechanism, meant: &Meant) {
         if change.abs() <= UNCHANGED {
             continue;
         }
-        if let Some(old) = editing.text.get(&path).map(str::to_owned)
-            && let Some(new) = in_place_of(editing, &old, start + change, is_angle)
+        if let Some(place) = editing.text.place(&path)
+            && let old = &editing.text.as_str()[place.clone()]
+            && let Some(new) = in_place_of(editing, old, start + change, is_angle)
         {
-            editing.text.set(&path, &new);
+            parts.replace(place, new);
         }
     }
 }
 
 /// Sets a number at a path, or an element of the list there.
 fn set_number(
-    editing: &mut Editing,
+    editing: &Editing,
+    parts: &mut Parts,
     mechanism: &Mechanism,
     path: &[&str],
     element: Option<usize>,
@@ -294,7 +329,7 @@ fn set_number(
             if through == Some(Through::Parameter)
                 && let Some(wanted) = wanted
             {
-                return set_parameter(editing, &parameter, wanted, is_angle);
+                return set_parameter(editing, parts, &parameter, wanted, is_angle);
             }
             return Err(Refusal::Ask {
                 parameter,
@@ -303,7 +338,7 @@ fn set_number(
             });
         }
     };
-    editing.text.replace(place, &new);
+    parts.replace(place, new);
     Ok(())
 }
 
@@ -372,7 +407,8 @@ fn parameter_for(
 }
 
 fn set_parameter(
-    editing: &mut Editing,
+    editing: &Editing,
+    parts: &mut Parts,
     name: &str,
     value: f64,
     is_angle: bool,
@@ -383,10 +419,14 @@ fn set_parameter(
     } else {
         &table[..2]
     };
-    let old = editing.text.get(path).unwrap_or("0").to_owned();
-    let new = in_place_of(editing, &old, value, is_angle);
+    let place = editing.text.place(path);
+    let new = place.and_then(|place| {
+        let old = &editing.text.as_str()[place.clone()];
+        let new = in_place_of(editing, old, value, is_angle)?;
+        Some((place, new))
+    });
     let new = new.ok_or_else(|| Refusal::Because(format!("`{name}` is an expression itself")))?;
-    editing.text.set(path, &new);
+    parts.replace(new.0, new.1);
     Ok(())
 }
 
@@ -400,6 +440,7 @@ pub(super) fn refresh_estimates(editing: &mut Editing, far: f64) {
         return;
     }
     let size = editing.drawn.size();
+    let mut parts = Parts::default();
     for (index, body) in mechanism.bodies.iter().enumerate() {
         let frame = editing.drawn.frame(Some(BodyId(index)));
         let estimate = body
@@ -409,7 +450,8 @@ pub(super) fn refresh_estimates(editing: &mut Editing, far: f64) {
         let off = f64::hypot(estimate[0] - frame[0], estimate[1] - frame[1]);
         let turned = super::super::number::within_turn(estimate[2] - frame[2]).abs();
         if off > far * size || turned > far {
-            set_estimate(editing, mechanism, BodyId(index), frame);
+            set_estimate(editing, &mut parts, mechanism, BodyId(index), frame);
         }
     }
+    parts.write(editing);
 }
