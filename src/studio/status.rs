@@ -1,7 +1,7 @@
 //! State of a drawing, and its lack until it is a mechanism that moves, in plain words.
 
 use super::drawn::Drawn;
-use crate::mechanism::Driver;
+use crate::mechanism::{Driver, Joint, MarkerId};
 
 /// The state of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +66,9 @@ pub(super) fn sentence(drawn: &Drawn) -> String {
         State::Rigid => "nothing can move: no degree of freedom is left".to_owned(),
         State::Undriven => {
             let lacking = match (driven, drawn.undriven) {
+                _ if !is_on_ground(drawn) => {
+                    "fix a point to ground, by a pivot or a slider".to_owned()
+                }
                 (0, 1) => "add a driver at a joint, or let it move freely".to_owned(),
                 (0, count) => format!("{count} drivers are to be added, or more joints"),
                 (_, 1) => "one is not driven yet: add a driver or a joint".to_owned(),
@@ -87,6 +90,19 @@ pub(super) fn sentence(drawn: &Drawn) -> String {
             }
         }
     }
+}
+
+/// Returns whether a joint or a driver holds a body on ground.
+fn is_on_ground(drawn: &Drawn) -> bool {
+    drawn.mechanism.as_ref().is_some_and(|mechanism| {
+        let of_ground = |id: MarkerId| mechanism.markers[id.index()].body.is_none();
+        let mut joints = mechanism.joints.iter().flat_map(Joint::markers);
+        let drivers = mechanism
+            .drivers
+            .iter()
+            .flat_map(|d| d.coordinate.markers());
+        joints.any(of_ground) || drivers.into_iter().any(of_ground)
+    })
 }
 
 fn degrees(count: usize) -> String {

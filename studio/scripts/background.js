@@ -30,7 +30,13 @@ export class Background {
     this.middle = [...this.sheet.center];
     this.look();
     this.studio.setMode("design");
+    this.askScale();
+  }
+
+  /** Asks for two points whose distance is known. */
+  askScale() {
     this.studio.design.take("scale");
+    this.studio.say("Scale of the picture: click two points whose distance you know");
   }
 
   remove() {
@@ -61,7 +67,7 @@ export class Background {
     const answer = await openWindow(this.studio.root, "Scale of the picture", (form) => {
       const label = add(form, "label", { textContent: `Distance of the two points [${unit.name}] ` });
       field = add(label, "input", { type: "text", inputMode: "decimal", required: true, autocomplete: "off" });
-      buttonRow(form, ["Set", "set"]);
+      buttonRow(form, ["Set", "set"], ["Cancel", ""]);
       setTimeout(() => field.focus());
     });
     const length = answer === "set" ? lengthOf(field.value, unit) : NaN;

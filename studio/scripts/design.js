@@ -44,6 +44,7 @@ export class Design {
   /** Gives up what was begun. */
   drop() {
     this.found = [];
+    this.over = null;
     this.typed.hidden = true;
     if (this.drag?.shown) {
       this.studio.showAgain();
@@ -54,7 +55,9 @@ export class Design {
 
   hint() {
     const { hints } = TOOLS[this.tool];
-    this.studio.hint(hints[Math.min(this.found.length, hints.length - 1)]);
+    const hint = hints[Math.min(this.found.length, hints.length - 1)];
+    // A finger has no Ctrl.
+    this.studio.hint(matchMedia("(hover: none)").matches ? hint.replace(", with Ctrl it is a pivot on ground", "") : hint);
   }
 
   // -- the pointer ---------------------------------------------------------------------------
@@ -89,12 +92,30 @@ export class Design {
   look(event) {
     const chosen = TOOLS[this.tool];
     const origin = chosen.typed && this.found.length ? this.found[this.found.length - 1].at : null;
-    return findAt(this.sheet, this.sketch, this.sheet.placeOf(event), {
+    const found = findAt(this.sheet, this.sketch, this.sheet.placeOf(event), {
       kind: event.pointerType,
       origin: this.drag?.origin ?? origin,
-      free: event.shiftKey || event.altKey,
+      // Over a picture its lines lead the hand, not the grid.
+      free: event.shiftKey || event.altKey || Boolean(this.studio.background.image),
       without: this.drag?.without ?? [],
     });
+    if (this.tool === "scale") {
+      return { at: this.sheet.toPoint(this.sheet.placeOf(event)), guides: [] };
+    }
+    const inside = ["select", "mass"].includes(this.tool) && !this.drag && !found.point && !found.body;
+    return inside ? { ...found, ...this.insideOf(event) } : found;
+  }
+
+  /** Returns the body in whose area a pointer is, or the thing whose name it is at. */
+  insideOf(event) {
+    const { clientX, clientY } = event;
+    const named = this.sheet.nameAt(clientX, clientY);
+    const thing = named && this.studio.thingNamed(named);
+    if (thing) {
+      return { thing };
+    }
+    const [index] = this.sheet.bodiesAt(clientX, clientY);
+    return index === undefined ? {} : { body: this.sketch.bodies[index]?.name };
   }
 
   down(event) {
@@ -275,7 +296,7 @@ export class Design {
     if (found.body) {
       return { kind: "body", name: found.body };
     }
-    return null;
+    return found.thing ?? null;
   }
 
   // -- dragging ------------------------------------------------------------------------------
@@ -380,8 +401,8 @@ export class Design {
     if (!this.typed.hidden && this.found.length) {
       const [u, v] = this.sheet.toScreen(this.found[this.found.length - 1].at);
       const [width, height] = this.sheet.size;
-      this.typed.style.left = `${Math.max(4, Math.min(width - 210, u + 16))}px`;
-      this.typed.style.top = `${Math.max(4, Math.min(height - 84, v + 18))}px`;
+      this.typed.style.left = `${Math.max(4, Math.min(width - this.typed.offsetWidth - 4, u + 16))}px`;
+      this.typed.style.top = `${Math.max(4, Math.min(height - this.typed.offsetHeight - 4, v + 24))}px`;
     }
   }
 
@@ -410,7 +431,9 @@ export class Design {
       return;
     }
     if (!this.drag) {
-      for (const { at, markers } of this.sketch.points) {
+      const traced = this.sketch.traced ?? [];
+      // Points of interest have their names in the picture.
+      for (const { at, markers } of this.sketch.points.filter((point) => !point.markers.some((m) => traced.includes(m)))) {
         sheet.words(at, ownMarker({ markers }).split(".")[1], "letter", [-16, -9]);
       }
     }
@@ -527,6 +550,10 @@ export class Design {
     if (this.found.length && TOOLS[this.tool].typed && /^[0-9.,]$/.test(key)) {
       this.long.focus();
       this.long.value = key;
+      return true;
+    }
+    if (key === "F2" && this.studio.selected().length) {
+      this.studio.act({ kind: "rename", old: this.studio.selected()[0] });
       return true;
     }
     if ((key === "Delete" || key === "Backspace") && this.studio.selection) {

@@ -65,7 +65,7 @@ export async function askLength(root, { markers, long, unit }) {
     name = field("Name, to make it a parameter ", "");
     name.pattern = "[A-Za-z][A-Za-z0-9_]*";
     name.placeholder = "crank_length";
-    buttonRow(form, ["Set", "set"]);
+    buttonRow(form, ["Set", "set"], ["Cancel", ""]);
     setTimeout(() => length.select());
   });
   const value = length.value === before ? long : lengthOf(length.value, unit);

@@ -17,16 +17,15 @@ export class Inspector {
       return;
     }
     this.told = told;
-    this.place.replaceChildren();
+    // While the text has an error, the last form stays where it is.
+    this.place.classList.toggle("kept", !answer?.title);
     if (!answer?.title) {
       return;
     }
+    this.place.replaceChildren();
+    this.place.scrollTop = 0;
     const title = add(this.place, "h2");
     say(title, answer.title);
-    const rows = add(this.place, "div", { className: "rows" });
-    for (const row of answer.rows) {
-      this.row(rows, row);
-    }
     this.related(add(this.place, "p", { className: "related" }));
     const actions = add(this.place, "p", { className: "actions" });
     for (const { label, gesture, why } of answer.actions) {
@@ -36,6 +35,10 @@ export class Inspector {
       }
       button.append(label);
       button.addEventListener("click", () => this.studio.act(gesture));
+    }
+    const rows = add(this.place, "div", { className: "rows" });
+    for (const row of answer.rows) {
+      this.row(rows, row);
     }
   }
 

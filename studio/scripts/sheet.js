@@ -179,6 +179,12 @@ export class Sheet {
     return found;
   }
 
+  /** Returns the name written at a place of the screen, or nothing. */
+  nameAt(x, y) {
+    const texts = document.elementsFromPoint(x, y).filter((element) => element.closest?.(".names") && this.svg?.contains(element));
+    return texts[0]?.textContent;
+  }
+
   // -- marks ---------------------------------------------------------------------------------
 
   /** Clears the marks above the picture. */

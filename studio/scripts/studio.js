@@ -15,6 +15,10 @@ const EMPTY = 'format = 1\nname = "mechanism"\n';
 const KEPT = "biela.studio";
 // Pause after which typing goes on as another change [ms].
 const PAUSE = 900;
+// Time for which a message stands [ms].
+const TOLD = 8000;
+// Templates that come first.
+const EVERYDAY = ["pendulum", "slider_crank", "four_bar", "tlv", "pendulum_free", "loader", "scotch_yoke", "cam_roller", "planetary_gear", "toggle_press"];
 const UNITS = { mm: 1e-3, cm: 1e-2, m: 1, inch: 0.0254 };
 
 class Studio {
@@ -22,7 +26,8 @@ class Studio {
     this.root = root;
     this.module = module;
     this.parts = parts;
-    this.templates = templates;
+    const rank = ({ name }) => (EVERYDAY.includes(name) ? EVERYDAY.indexOf(name) : EVERYDAY.length);
+    this.templates = [...templates].sort((a, b) => rank(a) - rank(b));
     this.find = (selector) => root.querySelector(selector);
     this.solver = new Solver(module);
     this.view = {};
@@ -63,6 +68,17 @@ class Studio {
   /** The mechanism's name, for files. */
   get name() {
     return this.text.match(/^name\s*=\s*"([A-Za-z0-9_]+)"/m)?.[1] ?? "mechanism";
+  }
+
+  /** The thing of a name, for selection; nothing if there is none. */
+  thingNamed(name) {
+    const { sketch } = this.view;
+    if (sketch?.bodies.some((body) => body.name === name)) {
+      return { kind: "body", name };
+    }
+    const lists = [sketch?.drivers, sketch?.forces, sketch?.stops, sketch?.joints];
+    const isThing = lists.some((list) => list?.some((thing) => thing.name === name));
+    return isThing ? { kind: "thing", name } : undefined;
   }
 
   /** Names in the file, for completion. */
@@ -110,6 +126,18 @@ class Studio {
     this.setMode("design");
   }
 
+  /** Asks before a drawing is given up that was changed; true if it may go. */
+  async mayLeave() {
+    if (!this.view.can_undo) {
+      return true;
+    }
+    const answer = await openWindow(this.root, "Give up this drawing?", (form) => {
+      say(add(form, "p"), `\`${this.name}\` was changed. What is not saved as a file is lost.`);
+      buttonRow(form, ["Keep it", ""], ["Give it up", "leave"]);
+    });
+    return answer === "leave";
+  }
+
   /** Does a gesture; shows its outcome, and says why not. */
   gesture(gesture, tells = true) {
     const { scale, decimals } = this.sheet;
@@ -125,6 +153,9 @@ class Studio {
     }
     this.say("");
     this.show(answer);
+    if (gesture.kind === "mass") {
+      this.select({ kind: "body", name: gesture.body });
+    }
     return answer;
   }
 
@@ -305,7 +336,7 @@ class Studio {
 
   /** Opens the menu of what was found. */
   openMenu(found, event) {
-    const names = found.point ? found.point.markers : found.body ? [found.body] : [];
+    const names = found.point?.markers ?? [found.body ?? found.thing?.name].filter(Boolean);
     const answer = this.ask({ do: "inspect", names });
     const items = (answer.actions ?? []).map(({ label, gesture, why }) => ({
       label,
@@ -366,6 +397,8 @@ class Studio {
     const line = this.find(".said");
     say(line, sentence(text));
     line.hidden = text === "";
+    clearTimeout(this.saying);
+    this.saying = setTimeout(() => (line.hidden = true), TOLD);
   }
 
   // -- modes ---------------------------------------------------------------------------------
@@ -389,6 +422,7 @@ class Studio {
       this.design.hint();
     } else {
       this.design.drop();
+      this.find(".moving").scrollTop = 0;
       this.hint("Pull a body with the mouse or a finger; space plays");
       this.live.fit();
     }
@@ -551,23 +585,34 @@ class Studio {
     const box = event.currentTarget.getBoundingClientRect();
     this.menu.open(
       [
-        { label: "New", act: () => this.open({ name: "mechanism.toml", text: EMPTY }) },
+        { label: "New", act: () => this.begin() },
         { label: "Open a file …", act: () => this.find(".opened").click() },
         { label: "Templates …", act: () => this.chooseTemplate() },
-        this.background.image
-          ? { label: "Remove the background picture", act: () => this.background.remove() }
-          : { label: "Background picture …", act: () => this.find(".pictured").click() },
+        { label: "Background picture …", act: () => this.find(".pictured").click() },
+        ...(this.background.image
+          ? [
+              { label: "Scale of the picture …", act: () => this.background.askScale() },
+              { label: "Remove the picture", act: () => this.background.remove() },
+            ]
+          : []),
         "Save",
         { label: "Mechanism file (TOML)  Ctrl+S", act: () => saveFile(this) },
         { label: "FMU  Ctrl+E", act: () => exportFmu(this) },
         { label: "Picture (SVG)", act: () => saveDrawing(this, "svg"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Picture (PNG)", act: () => saveDrawing(this, "png"), why: this.sheet.svg ? "" : "Nothing is drawn" },
-        { label: "Drawing for the workshop (DXF)", act: () => saveMade(this, "dxf", "image/vnd.dxf") },
-        { label: "Moving picture (GIF)", act: () => saveMade(this, "gif", "image/gif") },
-        { label: "Copy a link", act: () => shareLink(this) },
+        { label: "Drawing for the workshop (DXF)", act: () => saveMade(this, "dxf", "image/vnd.dxf"), why: this.sheet.svg ? "" : "Nothing is drawn" },
+        { label: "Moving picture (GIF)", act: () => saveMade(this, "gif", "image/gif"), why: this.sheet.svg ? "" : "Nothing is drawn" },
+        { label: "Copy a web link", act: () => shareLink(this) },
       ],
       [box.left, box.bottom + 2],
     );
+  }
+
+  async begin() {
+    if (await this.mayLeave()) {
+      this.background.remove();
+      this.open({ name: "mechanism.toml", text: EMPTY });
+    }
   }
 
   async chooseTemplate() {
@@ -582,7 +627,8 @@ class Studio {
       buttonRow(form, ["Cancel", ""]);
     });
     const template = this.templates.find((each) => each.name === name);
-    if (template) {
+    if (template && (await this.mayLeave())) {
+      this.background.remove();
       this.open({ name: `${template.name}.toml`, text: template.text, files: template.files });
     }
   }
@@ -595,11 +641,17 @@ class Studio {
     }
     const other = files.find((file) => /\.(asmt|linkage2|json|dxf|pmks)$/i.test(file.name));
     if (other) {
+      if (!(await this.mayLeave())) {
+        return;
+      }
       const imported = await importFile(this, other);
       if (imported) {
         this.open(imported);
         this.say(imported.notes.join("; "));
       }
+      return;
+    }
+    if (!(await this.mayLeave())) {
       return;
     }
     const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));

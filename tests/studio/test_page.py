@@ -73,7 +73,7 @@ def test_a_link_holds_the_mechanism(sheet, chromium, folder, tmp_path):
         })"""
     )
     sheet.page.locator(".file-menu").click()
-    sheet.page.get_by_text("Copy a link").click()
+    sheet.page.get_by_text("Copy a web link").click()
     link = sheet.page.wait_for_function("() => window.copied").json_value()
     context = chromium.new_context()
     page = context.new_page()

@@ -3,12 +3,13 @@
 use serde_json::Value;
 
 use super::parameter::{add_parameter, check_name, is_number};
-use super::shift::{Through, UNCHANGED, ends_of_bar, move_points};
+use super::shift::{Through, UNCHANGED, ends_of_bar, move_alone};
 use super::{Editing, Refusal, names};
 use crate::mechanism::MarkerId;
 
 /// Sets the distance between two `markers` of one body, or of ground, to `value` \[m\]: the second one
-/// moves along the line, with all that is pinned to it. With `name` the length becomes a parameter.
+/// moves along the line on its body, all other lengths stay. With `name` the length becomes a
+/// parameter.
 pub(super) fn length(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
     let [first, second] = names(gesture, "markers")?[..] else {
         return Err("a length is between two points".into());
@@ -58,7 +59,7 @@ pub(super) fn length(editing: &mut Editing, gesture: &Value) -> Result<(), Refus
     }
     if is_other {
         let by = way.map(|part| part * (value - now) / now);
-        move_points(editing, &[ends[1]], by, Through::of(gesture))?;
+        move_alone(editing, ends[1], by, Through::of(gesture))?;
     }
     if let Some(name) = name {
         // Only now has the number its last value.

@@ -44,6 +44,23 @@ impl Parts {
         self.replaced.push((place, with));
     }
 
+    /// Takes the numbers of markers and estimates.
+    fn take(
+        &mut self,
+        editing: &Editing,
+        mechanism: &Mechanism,
+        meant: &Meant,
+        through: Option<Through>,
+    ) -> Result<(), Refusal> {
+        for (marker, place) in &meant.inside {
+            set_marker(editing, self, mechanism, *marker, *place, through)?;
+        }
+        for (body, frame) in &meant.frames {
+            set_estimate(editing, self, mechanism, BodyId(*body), *frame);
+        }
+        Ok(())
+    }
+
     fn write(mut self, editing: &mut Editing) {
         self.replaced.sort_by_key(|(place, _)| place.start);
         editing.text.replace_all(&self.replaced);
@@ -88,6 +105,22 @@ pub(super) fn move_points(
     move_rounded(editing, markers, by, through, false)
 }
 
+/// Moves a point on its body alone: what is pinned to it follows where the mechanism closes, and all
+/// other lengths and the starts of drivers stay.
+pub(super) fn move_alone(
+    editing: &mut Editing,
+    marker: MarkerId,
+    by: [f64; 2],
+    through: Option<Through>,
+) -> Result<(), Refusal> {
+    let mechanism = editing.mechanism()?;
+    let meant = meant(editing, mechanism, &BTreeSet::from([marker]), by, false);
+    let mut parts = Parts::default();
+    parts.take(editing, mechanism, &meant, through)?;
+    parts.write(editing);
+    Ok(())
+}
+
 fn move_rounded(
     editing: &mut Editing,
     markers: &[MarkerId],
@@ -102,12 +135,7 @@ fn move_rounded(
     }
     let meant = meant(editing, mechanism, &moved, by, is_rounded);
     let mut parts = Parts::default();
-    for (marker, place) in &meant.inside {
-        set_marker(editing, &mut parts, mechanism, *marker, *place, through)?;
-    }
-    for (body, frame) in &meant.frames {
-        set_estimate(editing, &mut parts, mechanism, BodyId(*body), *frame);
-    }
+    parts.take(editing, mechanism, &meant, through)?;
     set_starts(editing, &mut parts, mechanism, &meant);
     parts.write(editing);
     Ok(())
