@@ -91,7 +91,8 @@ export class Design {
 
   look(event) {
     const chosen = TOOLS[this.tool];
-    const origin = chosen.typed && this.found.length ? this.found[this.found.length - 1].at : null;
+    const last = this.found[this.found.length - 1];
+    const origin = chosen.typed && last ? this.sheet.settled(last.at) : null;
     const found = findAt(this.sheet, this.sketch, this.sheet.placeOf(event), {
       kind: event.pointerType,
       origin: this.drag?.origin ?? origin,
@@ -408,7 +409,7 @@ export class Design {
 
   takeTyped() {
     const { unit } = this.studio;
-    const from = this.found[this.found.length - 1].at;
+    const from = this.sheet.settled(this.found[this.found.length - 1].at);
     const to = this.over?.at ?? [from[0] + 1, from[1]];
     const ahead = [to[0] - from[0], to[1] - from[1]];
     const length = this.long.value.trim() === "" ? Math.hypot(...ahead) : lengthOf(this.long.value, unit);

@@ -204,16 +204,13 @@ impl<'a> Editing<'a> {
         problems.into_iter().filter(is_error).collect()
     }
 
-    /// Returns the global point of a target, of a marker its own. What is drawn to the grid is there
-    /// again, whatever its lengths were rounded to.
+    /// Returns the global point of a target. A marker's is the one that was drawn, whatever its lengths
+    /// were rounded to.
     pub(super) fn settled(&self, target: &Target) -> Result<[f64; 2], Refusal> {
-        let [x, y] = match &target.onto {
-            Onto::Marker(path) => {
-                let [x, y, _] = self.drawn.place(self.marker(path)?);
-                [x, y]
-            }
-            _ => target.at,
+        let Onto::Marker(path) = &target.onto else {
+            return Ok(target.at);
         };
+        let [x, y, _] = self.drawn.place(self.marker(path)?);
         let slack = 2.0 * 10.0_f64.powi(-(self.decimals as i32) - 1);
         Ok([x, y].map(|x| {
             let drawn = self.rounded(x);
