@@ -89,8 +89,8 @@ fn is_word(found: &WrittenText, text: &str) -> bool {
         // The law of a coupling is an expression, those of motions and profiles are words.
         ["joints", _, "law"] => false,
         [.., "phase"] => &text[found.inside.clone()] == "drawn",
-        // Markers may have any name,         ["bodies", _, "markers", ..] | ["ground", ..] => false,
-        ["parameters", _] => false,
+        // Markers and parameters may have any of these names.
+        ["bodies", _, "markers", ..] | ["ground", ..] | ["parameters", _] => false,
         [.., key] => WORDS.contains(&key),
         [] => true,
     }

@@ -120,6 +120,30 @@ markers = ["crank.A"]
 }
 
 #[test]
+fn markers_and_parameters_may_have_the_names_of_keys() {
+    let text = r#"format = 1
+name = "mechanism"
+
+[parameters]
+reach = 0.2
+side = "reach/2"
+
+[ground.markers]
+side = ["reach", 0]
+
+[bodies.rod]
+markers = { points = [0, "side"], file = ["reach", 0] }
+
+[joints]
+A = { type = "revolute", markers = ["ground.side", "rod.points"] }
+"#;
+    let mut host = studio(text);
+    let gesture = json!({ "kind": "rename", "old": "reach", "new": "span" });
+    act(&mut host, &gesture);
+    assert_eq!(host.text(), text.replace("reach", "span"));
+}
+
+#[test]
 fn illegal_taken_and_ambiguous_names_are_refused() {
     let mut host = shipped_studio("cam_knife.toml");
     let mut why = |old: &str, new: &str| {
