@@ -6,7 +6,7 @@ use std::io::Write as _;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, GzBuilder};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::drawing::animation::{fill, page_with};
 use crate::drawing::svg::escape;
@@ -43,10 +43,7 @@ pub(super) fn page(source: &Source, mechanism: &Mechanism, solver: &str) -> Stri
 /// Returns the part of a page for a mechanism; the page has the [`solver`] and the [`script`], too.
 /// With a token the page may write the file of `biela watch`.
 pub(super) fn main(source: &Source, mechanism: &Mechanism, token: Option<&str>) -> String {
-    let files = mechanism.table_files.iter();
-    let files: Vec<[&str; 2]> = files.map(|file| [&*file.name, &*file.text]).collect();
-    let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
-    let file = json!({ "name": name, "text": source.text(), "files": files });
+    let file = file(source, Some(mechanism));
     let token = token.map_or_else(String::new, |token| {
         format!(" data-token=\"{}\"", escape(token))
     });
@@ -58,6 +55,17 @@ pub(super) fn main(source: &Source, mechanism: &Mechanism, token: Option<&str>) 
             ("file", &file.to_string().replace('<', "\\u003c")),
         ],
     )
+}
+
+/// Returns a file as pages open it: its name, its text and, of a file without errors, the tables that it
+/// names.
+pub(super) fn file(source: &Source, mechanism: Option<&Mechanism>) -> Value {
+    let files = mechanism.map_or(&[][..], |mechanism| &mechanism.table_files);
+    let files: Vec<[&str; 2]> = (files.iter())
+        .map(|file| [&*file.name, &*file.text])
+        .collect();
+    let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
+    json!({ "name": name, "text": source.text(), "files": files })
 }
 
 /// Returns the element with the packed solver. The same solver gives the same text.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::live::{SCRIPTS, licences, module, packed, solver};
+use super::live::{SCRIPTS, licences, module, packed};
 use crate::drawing::animation::{STYLE, fill, parts_script};
 use crate::mechanism::Mechanism;
 
@@ -30,7 +30,7 @@ const OWN_SCRIPTS: [&str; 12] = [
 ];
 
 /// The beginning of a page.
-pub(super) struct Beginning {
+pub(super) struct Beginning<'a> {
     /// The file to open: `name`, `text` and `files`, names with contents.
     pub(super) file: Option<Value>,
     /// With these the page may write the file on the disk: a token, and the version of the file.
@@ -38,11 +38,11 @@ pub(super) struct Beginning {
     /// Names of the parts beside the page: platforms that have a library, and `page`.
     pub(super) parts: Vec<String>,
     /// Mechanisms to begin from: `name`, `description`, `text` and `files`.
-    pub(super) templates: Vec<Value>,
+    pub(super) templates: &'a [Value],
 }
 
-/// Returns the page, with the studio's solver in it.
-pub(super) fn page(wasm: &[u8], beginning: &Beginning) -> String {
+/// Returns the page with the element of the studio's solver in it; see [`solver`](super::live::solver).
+pub(super) fn page(solver: &str, beginning: &Beginning) -> String {
     let disk = beginning.disk.as_ref();
     let data = json!({
         "file": beginning.file,
@@ -65,10 +65,7 @@ pub(super) fn page(wasm: &[u8], beginning: &Beginning) -> String {
             ("live", &live),
             // A text in it may not end the script.
             ("data", &data.to_string().replace('<', "\\u003c")),
-            (
-                "solver",
-                &format!("{}\n{}", solver(wasm), licences(&all_licences)),
-            ),
+            ("solver", &format!("{solver}\n{}", licences(&all_licences))),
             ("script", parts_script()),
             ("module", &module(scripts)),
         ],

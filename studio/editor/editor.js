@@ -293,7 +293,7 @@ function completions(complete) {
     if (!context.explicit && !typed && !/["'.[]/.test(before)) {
       return null;
     }
-    // What is typed out needs no more keys: Enter ends the line.
+    // A word that is typed out needs no more keys: Enter ends the line.
     if (!context.explicit && answer.options.some(({ label, apply = label }) => apply === typed)) {
       return null;
     }

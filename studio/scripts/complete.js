@@ -51,7 +51,7 @@ export function completions(text, offset, schema, names) {
   return found?.options.length ? { from: place.from, to: place.to, ...found } : null;
 }
 
-// What the caret may complete.
+// The completions at the caret.
 
 function headersAt({ document, parts, root, to, schema }) {
   const table = valueAt(root, parts);
@@ -139,7 +139,7 @@ function keysAt({ document, path, root, table, from, to, schema }) {
 function valueStart(alternatives, schema) {
   const isText = (value) => alternativesOf(value, undefined, schema).every((one) => one.enum || one.type === "string");
   const [first] = alternatives;
-  // Of a number and a table the number is simpler.
+  // A number is simpler than a table.
   if (!first || alternatives.some(isNumber)) {
     return { opening: "", caret: 0 };
   }

@@ -17,7 +17,7 @@ export class Design {
     this.studio = studio;
     this.sheet = sheet;
     this.tool = "select";
-    // What was found at the clicks so far.
+    // Findings at the clicks so far.
     this.found = [];
     this.pointers = new Map();
     this.answers = new Map();
@@ -465,12 +465,8 @@ export class Design {
 
   markFound({ at, point, body, guides }) {
     const { sheet } = this;
-    for (const [from, k] of guides) {
-      if (k === null) {
-        sheet.line(from, at, "guide");
-      } else {
-        sheet.line(from, at, "guide");
-      }
+    for (const from of guides) {
+      sheet.line(from, at, "guide");
     }
     if (point) {
       sheet.ring(at, "found", 11);
@@ -565,6 +561,7 @@ export class Design {
       this.holds = key;
     }
     const tool = Object.keys(TOOLS).find((name) => TOOLS[name].key === key.toLowerCase());
+    // While something is drawn, G held makes the next point one of ground.
     if (tool && !(key === "g" && this.found.length)) {
       this.take(tool);
       return true;

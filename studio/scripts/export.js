@@ -1,4 +1,4 @@
-// What leaves the studio: the FMU, the file, pictures, a link.
+// The ways out of the studio: the FMU, the file, pictures, a link.
 
 import { add, say } from "./controls.js";
 import { buttonRow, openWindow } from "./dialogs.js";

@@ -12,7 +12,7 @@ export class Inspector {
   show() {
     const answer = this.studio.ask({ do: "inspect", names: this.studio.selected() });
     const told = JSON.stringify(answer);
-    // What is being typed in stays as it is.
+    // A field that is being typed in stays as it is.
     if (told === this.told && this.place.contains(document.activeElement)) {
       return;
     }

@@ -1,4 +1,4 @@
-// What the pointer is at: a point, a bar, or a place of the sheet that the grid and directions draw to
+// The thing at the pointer: a point, a bar, or a place of the sheet that the grid and directions draw to
 // themselves.
 
 // Distance within which the pointer finds a point, with a mouse and with a finger [pixels].
@@ -67,7 +67,7 @@ function drawn(sheet, points, place, origin) {
     }, null);
     if (level) {
       at[k] = level.point.at[k];
-      guides.push([level.point.at, k]);
+      guides.push(level.point.at);
     }
   }
   if (origin && guides.length === 0) {
@@ -79,7 +79,7 @@ function drawn(sheet, points, place, origin) {
       const rounded = Math.max(step, Math.round(long / step) * step);
       return {
         at: [origin[0] + rounded * Math.cos(turn), origin[1] + rounded * Math.sin(turn)],
-        guides: [[origin, null]],
+        guides: [origin],
       };
     }
   }

@@ -184,8 +184,21 @@ class Studio {
     this.redrawing = true;
     requestAnimationFrame(() => {
       this.redrawing = false;
-      this.show(this.ask({ do: "view", scale: this.sheet.scale }));
+      this.draw(this.ask({ do: "view", scale: this.sheet.scale }));
+      this.design.mark();
     });
+  }
+
+  /** Draws a view, which was asked for at the sheet's scale. */
+  draw(view) {
+    if (view.text === undefined) {
+      return;
+    }
+    this.view = { ...this.view, ...view };
+    this.drawnScale = this.sheet.scale;
+    if (view.sketch) {
+      this.sheet.show(view.picture, this.drawnScale);
+    }
   }
 
   /** Shows a view; only the part of the text that has changed goes to the editor. */
@@ -194,7 +207,7 @@ class Studio {
       return;
     }
     const before = this.editor.text;
-    this.view = { ...this.view, ...view };
+    this.draw(view);
     if (anew) {
       this.editor.set(view.text);
     } else if (!typed && before !== view.text) {
@@ -202,10 +215,6 @@ class Studio {
       this.editor.replace(from, to, insert);
     }
     this.editor.problems(view.problems);
-    this.drawnScale = this.sheet.scale;
-    if (view.sketch) {
-      this.sheet.show(view.picture, this.drawnScale);
-    }
     this.root.classList.toggle("stale", view.is_stale);
     this.root.classList.toggle("blank", view.status?.state === "empty");
     this.find(".undo").disabled = !view.can_undo;

@@ -123,3 +123,20 @@ fn a_name_that_is_no_mechanism_file_is_refused() {
         stderr(&refused)
     );
 }
+
+#[test]
+fn a_file_that_the_page_cannot_show_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let solver = solver(&folder);
+    let path = folder.path().join("old.toml");
+    let latin = b"# cig\xfce\xf1al\nformat = 1\n";
+    std::fs::write(&path, latin).unwrap();
+    let refused = biela(&["studio", "--solver", &solver, path.to_str().unwrap()]).code(2);
+    assert_eq!(stdout(&refused), "");
+    assert!(
+        stderr(&refused).contains("it is not UTF-8"),
+        "{}",
+        stderr(&refused)
+    );
+    assert_eq!(std::fs::read(path).unwrap(), latin);
+}

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,13 +10,13 @@ use serde_json::{Value, json};
 
 use super::new::templates;
 use crate::cli::error::Error;
-use crate::cli::output::{print, write};
+use crate::cli::live;
+use crate::cli::output::{print, tell_written, write};
 use crate::cli::page_solver::{self, Solver};
 use crate::cli::runtime;
 use crate::cli::server::{Answer, PAGE, Request, SCRIPT, Server, TEXT, token};
 use crate::cli::studio_page::{Beginning, page, part};
-use crate::mechanism::Mechanism;
-use crate::mechanism::Source;
+use crate::mechanism::{Mechanism, Source, is_identifier};
 
 /// Draw a mechanism in a browser, move it, and take the FMU home.
 ///
@@ -52,7 +53,10 @@ pub(in crate::cli) struct Studio {
 
 /// The parts of a studio besides its page.
 struct Parts {
-    solver: Cow<'static, [u8]>,
+    /// The element with the packed solver.
+    solver: String,
+    /// The mechanisms to begin from.
+    templates: Vec<Value>,
     /// Names and contents of what goes into FMUs.
     packed: Vec<(String, Cow<'static, [u8]>)>,
 }
@@ -70,7 +74,8 @@ impl Parts {
         let page = page_solver::find(Solver::Page)?;
         let page = page.map(|solver| ("page".to_owned(), solver));
         Ok(Self {
-            solver,
+            solver: live::solver(&solver),
+            templates: shown_templates(),
             packed: libraries.chain(page).collect(),
         })
     }
@@ -81,7 +86,7 @@ impl Parts {
             file,
             disk,
             parts: parts.collect(),
-            templates: shown_templates(),
+            templates: &self.templates,
         };
         page(&self.solver, &beginning)
     }
@@ -108,15 +113,20 @@ impl Studio {
         if let Some(folder) = &self.write {
             return write_folder(&parts, folder);
         }
+        if let Some(file) = &self.file {
+            read(file).map_err(Error::read(file))?;
+        }
         let server = Server::new(self.port)?;
         let _ = print(&format!("{}\n", server.address()));
         let token = token();
         server.serve(|request| match (&*request.method, &*request.path) {
             ("GET", "/") => {
-                let file = self.file.as_deref().map(read);
-                let version = file.as_ref().map(|(_, version)| version.clone());
-                let disk = version.map(|version| [token.clone(), version]);
-                Answer::new(PAGE, parts.page(file.map(|(file, _)| file), disk))
+                let (file, disk) = match self.file.as_deref().map(read).transpose() {
+                    Ok(Some((file, version))) => (Some(file), Some([token.clone(), version])),
+                    Ok(None) => (None, None),
+                    Err(error) => return Answer::failure(error.to_string()),
+                };
+                Answer::new(PAGE, parts.page(file, disk))
             }
             ("GET", path) => match parts.script(path) {
                 Some(script) => Answer::new(SCRIPT, script),
@@ -131,47 +141,63 @@ impl Studio {
     }
 }
 
+/// Returns the bytes of the file, none of one that does not exist yet.
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    match std::fs::read(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        read => read,
+    }
+}
+
 /// Returns the file as the page opens it, and its version; one that does not exist is a new
 /// mechanism of its name.
-fn read(path: &Path) -> (Value, String) {
-    let stem = path
-        .file_stem()
-        .map(|stem| stem.to_string_lossy().into_owned());
-    let stem = stem.filter(|stem| crate::mechanism::is_identifier(stem));
-    let text = std::fs::read_to_string(path).unwrap_or_else(|_| {
-        let name = stem.unwrap_or_else(|| "mechanism".to_owned());
-        format!("format = 1\nname = \"{name}\"\n")
-    });
-    let name = path
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned());
-    let source = Source::new("", &*text).in_folder(path.parent().unwrap_or(Path::new("")));
-    let files = Mechanism::parse(&source).map(|(mechanism, _)| {
-        let files = mechanism.table_files.into_iter();
-        files
-            .map(|file| json!([file.name, file.text]))
-            .collect::<Vec<_>>()
-    });
-    let file = json!({ "name": name, "text": text, "files": files.unwrap_or_default() });
-    (file, version(path))
+///
+/// # Errors
+///
+/// The file cannot be read, or is not UTF-8: the page would write over what it has not shown.
+fn read(path: &Path) -> io::Result<(Value, String)> {
+    let bytes = bytes(path)?;
+    let version = version(&bytes);
+    let mut text = String::from_utf8(bytes).map_err(|_| {
+        let why = "it is not UTF-8: save it as UTF-8";
+        io::Error::new(io::ErrorKind::InvalidData, why)
+    })?;
+    if text.is_empty() {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let name = if is_identifier(&stem) {
+            &*stem
+        } else {
+            "mechanism"
+        };
+        text = format!("format = 1\nname = \"{name}\"\n");
+    }
+    let name = path.to_string_lossy();
+    let source = Source::new(name, text).in_folder(path.parent().unwrap_or(Path::new("")));
+    let mechanism = Mechanism::parse(&source).ok();
+    let mechanism = mechanism.as_ref().map(|(mechanism, _)| mechanism);
+    Ok((live::file(&source, mechanism), version))
 }
 
 /// Returns a word that changes with the content of a file.
-fn version(path: &Path) -> String {
+fn version(bytes: &[u8]) -> String {
     let mut hasher = DefaultHasher::new();
-    std::fs::read(path).unwrap_or_default().hash(&mut hasher);
+    bytes.hash(&mut hasher);
     format!("{:016x}", hasher.finish())
 }
 
 /// Writes the file, unless another program has changed it since the page read or wrote it.
 fn put(path: &Path, request: &Request) -> Answer {
-    if request.version.as_deref() != Some(&*version(path)) {
+    let now = match bytes(path) {
+        Ok(bytes) => version(&bytes),
+        Err(error) => return Answer::failure(error.to_string()),
+    };
+    if request.version.as_deref() != Some(&*now) {
         return Answer::conflict(
             "another program has changed it; load this page again, or save under another name",
         );
     }
     match std::fs::write(path, &request.body) {
-        Ok(()) => Answer::new(TEXT, version(path)),
+        Ok(()) => Answer::new(TEXT, version(request.body.as_bytes())),
         Err(error) => Answer::failure(error.to_string()),
     }
 }
@@ -185,7 +211,7 @@ fn write_folder(parts: &Parts, folder: &Path) -> Result<(), Error> {
     }
     let page = folder.join("index.html");
     write(&page, parts.page(None, None).as_bytes())?;
-    crate::cli::output::tell_written(&page);
+    tell_written(&page);
     Ok(())
 }
 
