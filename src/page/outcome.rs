@@ -64,6 +64,9 @@ impl Obstacle {
     ) -> Self {
         let pose = solver.pose();
         let time = (path.duration > 0.0).then_some(pose.time);
+        // The file does not know the drivers with which the hand holds it.
+        let drivers = &solver.mechanism().drivers;
+        let is_named = |id: DriverId| moves(id) && !drivers[id.index()].name.is_empty();
         let names: Vec<&str> = match &blocked.reason {
             Reason::Singular(point) => point.bodies.iter().map(String::as_str).collect(),
             Reason::Contradiction(open) => vec![&open.origin],
@@ -74,7 +77,7 @@ impl Obstacle {
             _ => place_of(&names, solver),
         };
         Self {
-            message: blocked.describe(solver.mechanism(), pose, time, moves),
+            message: blocked.describe(solver.mechanism(), pose, time, is_named),
             at,
             assembles: false,
         }

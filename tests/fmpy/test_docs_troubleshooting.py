@@ -67,6 +67,7 @@ PARTS = {
     "at t [s]": "a heading of the table of `tolerance`",
     "about the solver": "cannot be set: it is …",
     "the running program": "cannot read `…`",
+    "it is not UTF-8: save it as UTF-8": "cannot read `…`",
     "expected one of …": "told by the parser of options",
     "macOS, x86-64 and Apple silicon": "a name of `biela platforms`",
     "Linux, ARM 64-bit": "likewise",

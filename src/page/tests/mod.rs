@@ -51,6 +51,20 @@ fn a_crank_points_at_the_hand() {
     }
 }
 
+// With a crank of 0.36 m the coupler is the shortest link (Grashof), so that the crank only rocks.
+#[test]
+fn a_stop_names_no_driver_that_the_file_does_not_have() {
+    let (before, rest) = FOUR_BAR.split_once("[drivers]").expect("it has drivers");
+    let (_, after) = rest.split_once("[measures]").expect("measures follow");
+    let text = format!("{before}[measures]{after}");
+    let mut session = open(&text.replace("value = 0.10", "value = 0.36"));
+    let Outcome::Stopped(obstacle) = session.drive(DriverId(0), FRAC_PI_3 + PI) else {
+        panic!("the crank cannot get there");
+    };
+    let end = "the mechanism cannot go on";
+    assert!(obstacle.message.ends_with(end), "{}", obstacle.message);
+}
+
 // With two drivers a point in reach is reached: the residual is that of the linear systems.
 #[test]
 fn a_point_with_two_degrees_of_freedom_comes_to_the_hand() {
