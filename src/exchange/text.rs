@@ -7,7 +7,7 @@ use super::draft::{
     Stop, Wheels,
 };
 use super::names::Names;
-use crate::mechanism::{is_identifier, similar_identifier};
+use crate::mechanism::{is_identifier, shortest, similar_identifier};
 
 /// Longest line of comments, and of markers in one line.
 const LINE: usize = 100;
@@ -380,19 +380,6 @@ fn limits(stop: &Stop) -> String {
         }
     }
     text
-}
-
-/// Returns a number with at most this many decimals, without zeros at its end.
-fn shortest(number: f64, decimals: usize) -> String {
-    let text = format!("{number:.decimals$}");
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
-    };
-    match text {
-        "-0" => "0".to_owned(),
-        text => text.to_owned(),
-    }
 }
 
 /// Returns a comment on the name in the source, if the file has another one.

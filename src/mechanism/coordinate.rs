@@ -24,6 +24,20 @@ impl Coordinate {
         [self.from, self.to, self.axes]
     }
 
+    /// Returns its value \[m or rad\] where the markers are at these places: x, y \[m\] and angle
+    /// \[rad\] in the global frame.
+    pub(crate) fn between(&self, place: impl Fn(MarkerId) -> [f64; 3]) -> f64 {
+        let [from, to, axes] = [self.from, self.to, self.axes].map(place);
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let (sin, cos) = axes[2].sin_cos();
+        match self.kind {
+            CoordinateKind::Angle => to[2] - from[2],
+            CoordinateKind::X => cos * dx + sin * dy,
+            CoordinateKind::Y => cos * dy - sin * dx,
+            CoordinateKind::Distance => dx.hypot(dy),
+        }
+    }
+
     /// Returns what it measures, as descriptions of variables say it.
     #[must_use]
     pub fn describe(&self, mechanism: &Mechanism) -> String {
@@ -146,15 +160,7 @@ impl Mechanism {
             let (sin, cos) = phi.sin_cos();
             [x0 + cos * x - sin * y, y0 + sin * x + cos * y, phi + angle]
         };
-        let [from, to, axes] = [coordinate.from, coordinate.to, coordinate.axes].map(place);
-        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-        let (sin, cos) = axes[2].sin_cos();
-        match coordinate.kind {
-            CoordinateKind::Angle => to[2] - from[2],
-            CoordinateKind::X => cos * dx + sin * dy,
-            CoordinateKind::Y => cos * dy - sin * dx,
-            CoordinateKind::Distance => dx.hypot(dy),
-        }
+        coordinate.between(place)
     }
 }
 

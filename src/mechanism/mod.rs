@@ -109,6 +109,8 @@ pub(crate) use unit_slip::{is_plain, large_angle, large_angles, large_length, la
 pub(crate) use wording::quoted;
 #[cfg(any(feature = "drawing", feature = "fmi"))]
 pub(crate) use wording::rounded;
+#[cfg(feature = "page")]
+pub(crate) use wording::shortest;
 pub use wording::show_time;
 pub(crate) use wording::{fixed, fixed_apart, shown, shown_apart};
 

@@ -50,6 +50,20 @@ pub(crate) fn fixed(number: f64, decimals: usize) -> String {
     }
 }
 
+/// Returns a number with at most this many decimals, without zeros at its end.
+#[cfg(feature = "page")]
+pub(crate) fn shortest(number: f64, decimals: usize) -> String {
+    let text = format!("{number:.decimals$}");
+    let text = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    match text {
+        "-0" => "0".to_owned(),
+        text => text.to_owned(),
+    }
+}
+
 /// Returns two numbers with as many decimals as tell them apart, at least this many.
 pub(crate) fn fixed_apart(a: f64, b: f64, decimals: usize) -> [String; 2] {
     let shown = |decimals| [a, b].map(|number| fixed(number, decimals));

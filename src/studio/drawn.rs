@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use super::number::within_turn;
 use crate::drawing::animation::MovingPicture;
 use crate::kinematics::{Error, Path};
 use crate::mechanism::{
-    BodyId, Coordinate, CoordinateKind, Diagnostic, JointKind, MarkerId, Mechanism, Severity,
-    Source,
+    BodyId, Coordinate, Diagnostic, JointKind, MarkerId, Mechanism, Severity, Source,
 };
 use crate::page::assembled;
 
@@ -133,14 +133,10 @@ impl Drawn {
 
     /// Returns the value of a coordinate where the markers are at these places.
     pub(super) fn value_at(coordinate: Coordinate, place: impl Fn(MarkerId) -> [f64; 3]) -> f64 {
-        let [from, to, axes] = [coordinate.from, coordinate.to, coordinate.axes].map(place);
-        let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-        let (sin, cos) = axes[2].sin_cos();
-        match coordinate.kind {
-            CoordinateKind::Angle => super::number::within_turn(to[2] - from[2]),
-            CoordinateKind::X => cos * dx + sin * dy,
-            CoordinateKind::Y => cos * dy - sin * dx,
-            CoordinateKind::Distance => f64::hypot(dx, dy),
+        let value = coordinate.between(place);
+        match coordinate.kind.is_angle() {
+            true => within_turn(value),
+            false => value,
         }
     }
 

@@ -2,21 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use super::text::TomlText;
+use super::text::{SECTIONS, TomlText};
 
-/// Sections whose keys share one name space.
-pub(super) const NAMED: [&str; 10] = [
-    "parameters",
-    "bodies",
-    "joints",
-    "constraints",
-    "drivers",
-    "freedoms",
-    "measures",
-    "forces",
-    "stops",
-    "friction",
-];
+/// Sections whose keys are no names of things.
+const NAMELESS: [&str; 3] = ["ground", "outputs", "simulation"];
+
+/// Returns the sections whose keys share one name space.
+pub(super) fn named() -> impl Iterator<Item = &'static str> {
+    let sections = SECTIONS.into_iter();
+    sections.filter(|section| !NAMELESS.contains(section))
+}
 
 /// The names that a file gives.
 pub(super) struct Names {
@@ -29,7 +24,7 @@ pub(super) struct Names {
 impl Names {
     /// Collects the names of a file.
     pub(super) fn of(text: &TomlText) -> Self {
-        let shared = NAMED.iter().flat_map(|section| text.keys(&[section]));
+        let shared = named().flat_map(|section| text.keys(&[section]));
         let mut markers: BTreeSet<String> = text.keys(&["ground", "markers"]).into_iter().collect();
         for body in text.keys(&["bodies"]) {
             markers.extend(text.keys(&["bodies", &body, "markers"]));
@@ -59,11 +54,6 @@ impl Names {
         let letter = letters.find(is_free).unwrap_or_default();
         self.markers.insert(letter.clone());
         letter
-    }
-
-    /// Returns a name for a joint at a point of this name.
-    pub(super) fn joint_at(&mut self, point: &str) -> String {
-        self.new_name(point)
     }
 
     /// Returns whether a name is in use for a parameter, a body, a joint or the like.

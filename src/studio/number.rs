@@ -1,21 +1,10 @@
 //! Numbers as a person writes them.
 
-/// Returns a length \[m\] as it stands in a file, to these decimals.
-pub(super) fn length(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
-    };
-    match text {
-        "-0" | "" => "0".to_owned(),
-        text => text.to_owned(),
-    }
-}
+use crate::mechanism::shortest;
 
 /// Returns an angle \[rad\] as it stands in a file, in degrees to these decimals.
 pub(super) fn angle(value: f64, decimals: usize) -> String {
-    match &*length(value.to_degrees(), decimals) {
+    match &*shortest(value.to_degrees(), decimals) {
         "0" => "0".to_owned(),
         degrees => format!("\"{degrees}*deg\""),
     }
@@ -38,9 +27,9 @@ mod tests {
 
     #[test]
     fn numbers_have_no_zeros_that_say_nothing() {
-        assert_eq!(length(0.25, 4), "0.25");
-        assert_eq!(length(-0.000_01, 4), "0");
-        assert_eq!(length(30.0, 0), "30");
+        assert_eq!(shortest(0.25, 4), "0.25");
+        assert_eq!(shortest(-0.000_01, 4), "0");
+        assert_eq!(shortest(30.0, 0), "30");
         assert_eq!(angle(60.0_f64.to_radians(), 2), "\"60*deg\"");
         assert_eq!(angle(0.0, 2), "0");
     }

@@ -10,7 +10,7 @@ use toml_edit::{Document, Item, Table, TomlError};
 use super::places::Places;
 
 /// The sections of a mechanism file in the order in which new ones are put.
-const SECTIONS: [&str; 13] = [
+pub(super) const SECTIONS: [&str; 13] = [
     "parameters",
     "ground",
     "bodies",
@@ -94,6 +94,14 @@ impl TomlText {
             .as_array()?
             .get(index)?
             .span()
+    }
+
+    /// Returns the place of a value, or of an element of the list there.
+    pub(super) fn number(&self, path: &[&str], element: Option<usize>) -> Option<Range<usize>> {
+        match element {
+            Some(index) => self.element(path, index),
+            None => self.place(path),
+        }
     }
 
     /// Returns whether there is an item.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::names::NAMED;
+use super::super::names::named;
 use super::super::reference::{Reference, references};
 use super::rename::path_of;
 use super::{Editing, Refusal};
@@ -60,7 +60,7 @@ fn delete_faulty(editing: &mut Editing) -> Result<bool, Refusal> {
                     let index = elements.take_while(|place| place.end <= at).count();
                     faulty.insert((vec!["outputs".to_owned(), list.to_owned()], Some(index)));
                 }
-                [section, name, ..] if NAMED.contains(&section) => {
+                [section, name, ..] if named().any(|known| known == section) => {
                     faulty.insert((vec![section.to_owned(), name.to_owned()], None));
                 }
                 _ => {}

@@ -65,7 +65,7 @@ pub(super) fn length(editing: &mut Editing, gesture: &Value) -> Result<(), Refus
         // Only now has the number its last value.
         let (path, element) = number_of(editing, body, ends)?;
         let path: Vec<&str> = path.iter().map(String::as_str).collect();
-        let place = place_of(editing, &path, element);
+        let place = editing.text.number(&path, element);
         let place = place.ok_or("the number of the length is not found")?;
         let old = editing.text.as_str()[place.clone()].to_owned();
         let (sign, length) = match old.trim_start_matches('"').strip_prefix('-') {
@@ -76,17 +76,6 @@ pub(super) fn length(editing: &mut Editing, gesture: &Value) -> Result<(), Refus
         add_parameter(editing, name, &length, Some("m"));
     }
     Ok(())
-}
-
-fn place_of(
-    editing: &Editing,
-    path: &[&str],
-    element: Option<usize>,
-) -> Option<std::ops::Range<usize>> {
-    match element {
-        Some(index) => editing.text.element(path, index),
-        None => editing.text.place(path),
-    }
 }
 
 /// Returns the path of the number that is the distance between two markers, and its place in the list
@@ -135,7 +124,7 @@ fn number_of(
     } else {
         path.push("r");
     }
-    let place = place_of(editing, &path, element);
+    let place = editing.text.number(&path, element);
     let old = place
         .map(|place| editing.text.as_str()[place].to_owned())
         .unwrap_or_default();

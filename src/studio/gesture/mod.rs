@@ -54,9 +54,9 @@ use serde_json::Value;
 
 use super::drawn::{Drawn, inside};
 use super::names::Names;
-use super::number::{angle, length};
+use super::number::angle;
 use super::text::{TomlText, in_braces};
-use crate::mechanism::{Body, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source};
+use crate::mechanism::{Body, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source, shortest};
 
 /// Decimals of angles \[deg\].
 const ANGLE_DECIMALS: usize = 3;
@@ -269,12 +269,12 @@ impl<'a> Editing<'a> {
     /// Writes a length \[m\]: finer than points are, so that the ends of a bar are where they were
     /// drawn.
     pub(super) fn length(&self, value: f64) -> String {
-        length(value, self.decimals + 1)
+        shortest(value, self.decimals + 1)
     }
 
     /// Returns a coordinate of a point \[m\] as fine as the sheet shows it.
     pub(super) fn rounded(&self, value: f64) -> f64 {
-        length(value, self.decimals).parse().unwrap_or(value)
+        shortest(value, self.decimals).parse().unwrap_or(value)
     }
 
     /// Writes an angle \[rad\].
@@ -372,7 +372,7 @@ impl<'a> Editing<'a> {
 
     /// Adds a joint between two markers; returns its name.
     pub(super) fn join(&mut self, word: &str, kind: &str, [from, to]: [&str; 2]) -> String {
-        let name = self.names.joint_at(word);
+        let name = self.names.new_name(word);
         let value = format!("{{ type = \"{kind}\", markers = [\"{from}\", \"{to}\"] }}");
         self.text.set(&["joints", &name], &value);
         name

@@ -16,10 +16,7 @@ pub(super) fn parameter(editing: &mut Editing, gesture: &Value) -> Result<(), Re
     if path.first() == Some(&"parameters") {
         return Err("this is a parameter already: rename it".into());
     }
-    let place = match element {
-        Some(index) => editing.text.element(&path, index),
-        None => editing.text.place(&path),
-    };
+    let place = editing.text.number(&path, element);
     let place = place.ok_or("the file has no number there: give it one first")?;
     let old = editing.text.as_str()[place.clone()].to_owned();
     if !is_number(&old) {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::names::NAMED;
+use super::super::names::named;
 use super::super::reference::references;
 use super::super::text::TomlText;
 use super::{Editing, Refusal};
@@ -79,7 +79,7 @@ pub(super) fn path_of(text: &TomlText, name: &str) -> Result<Vec<String>, Refusa
             false => Err(format!("there is no marker `{name}`").into()),
         };
     }
-    let section = NAMED.iter().find(|section| text.has(&[section, name]));
+    let section = named().find(|section| text.has(&[section, name]));
     match section {
         Some(section) => Ok(owned(&[section, name])),
         None => Err(format!("there is nothing called `{name}`").into()),

@@ -5,9 +5,10 @@ use std::ops::Range;
 
 use serde_json::Value;
 
-use super::super::drawn::{Drawn, inside};
+use super::super::drawn::{Drawn, inside, outside};
+use super::super::number::within_turn;
 use super::{Editing, Refusal, point};
-use crate::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, constant};
+use crate::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, constant, shortest};
 
 /// Change of a number below which it stays as it is \[m or rad\].
 pub(super) const UNCHANGED: f64 = 1e-9;
@@ -297,7 +298,7 @@ fn set_starts(editing: &Editing, parts: &mut Parts, mechanism: &Mechanism, meant
         let frame = body.and_then(|body| meant.frames.get(&body.index()).copied());
         let frame = frame.unwrap_or_else(|| drawn.frame(body));
         let inside = meant.inside.get(&marker).copied();
-        super::super::drawn::outside(frame, inside.unwrap_or_else(|| drawn.inside(marker)))
+        outside(frame, inside.unwrap_or_else(|| drawn.inside(marker)))
     };
     for driver in &mechanism.drivers {
         let (section, start) = match driver.source {
@@ -308,7 +309,7 @@ fn set_starts(editing: &Editing, parts: &mut Parts, mechanism: &Mechanism, meant
         let is_angle = driver.coordinate.kind.is_angle();
         let change = Drawn::value_at(driver.coordinate, place) - drawn.value(driver.coordinate);
         let change = if is_angle {
-            super::super::number::within_turn(change)
+            within_turn(change)
         } else {
             change
         };
@@ -336,11 +337,7 @@ fn set_number(
     through: Option<Through>,
 ) -> Result<(), Refusal> {
     let is_angle = path.last() == Some(&"angle");
-    let place = match element {
-        Some(index) => editing.text.element(path, index),
-        None => editing.text.place(path),
-    };
-    let Some(place) = place else {
+    let Some(place) = editing.text.number(path, element) else {
         return Err(format!(
             "`{}` has another form than this gesture knows",
             path.join(".")
@@ -395,7 +392,7 @@ fn in_place_of(editing: &Editing, old: &str, value: f64, is_angle: bool) -> Opti
         // As fine as lengths in metres are written.
         false => (editing.decimals as i32 + 1 + factor.log10().round() as i32).max(0) as usize,
     };
-    let number = super::super::number::length(value / factor, decimals);
+    let number = shortest(value / factor, decimals);
     Some(format!("\"{number}*{unit}\""))
 }
 
@@ -476,7 +473,7 @@ pub(super) fn refresh_estimates(editing: &mut Editing, far: f64) {
             .each_ref()
             .map(|part| part.value(&editing.drawn.parameters));
         let off = f64::hypot(estimate[0] - frame[0], estimate[1] - frame[1]);
-        let turned = super::super::number::within_turn(estimate[2] - frame[2]).abs();
+        let turned = within_turn(estimate[2] - frame[2]).abs();
         if off > far * size || turned > far {
             set_estimate(editing, &mut parts, mechanism, BodyId(index), frame);
         }

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use super::document::Document;
 use super::gesture::{Editing, Refusal};
-use super::names::NAMED;
+use super::names::named;
 use actions::Actions;
 use rows::Rows;
 
@@ -67,7 +67,7 @@ pub(super) fn inspect(document: &Document, names: &[&str]) -> Result<Value, Refu
 
 /// Returns the section of the file that has a thing.
 fn section_of(editing: &Editing, name: &str) -> Option<&'static str> {
-    let mut sections = NAMED.into_iter();
+    let mut sections = named();
     sections.find(|section| editing.text.has(&[section, name]))
 }
 

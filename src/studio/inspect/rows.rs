@@ -193,10 +193,7 @@ impl<'a> Rows<'a> {
     /// Adds a number, or an element of a list.
     fn number(&mut self, label: &str, path: &[&str], element: Option<usize>, help: &str) {
         let editing = self.editing;
-        let place = match element {
-            Some(index) => editing.text.element(path, index),
-            None => editing.text.place(path),
-        };
+        let place = editing.text.number(path, element);
         let value = place.map(|place| editing.text.as_str()[place].to_owned());
         let value = value.unwrap_or_default();
         let unit = unit_of(editing.drawn, path, element);

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::super::drawn::Drawn;
 use super::super::gesture::{self, Editing, Refusal};
-use super::super::names::NAMED;
+use super::super::names::named;
 use super::super::text::TomlText;
 use super::{Files, act, act_warned, refusal, shipped, shipped_studio, state, studio};
 use crate::mechanism::{Mechanism, Severity, Source};
@@ -24,10 +24,7 @@ fn done(text: &str, drawn: &Drawn, files: &Files, gesture: &Value) -> Result<Str
 /// Returns all names of a file, of markers their paths.
 fn all_names(text: &str) -> Vec<String> {
     let text = TomlText::new(text).expect("it is TOML");
-    let mut names: Vec<String> = NAMED
-        .iter()
-        .flat_map(|section| text.keys(&[section]))
-        .collect();
+    let mut names: Vec<String> = named().flat_map(|section| text.keys(&[section])).collect();
     let ground = text.keys(&["ground", "markers"]);
     names.extend(ground.iter().map(|marker| format!("ground.{marker}")));
     for body in text.keys(&["bodies"]) {
