@@ -10,6 +10,9 @@ use crate::mechanism::{
 };
 use crate::page::assembled;
 
+/// Part of the drawing's size within which two points are one.
+const SAME: f64 = 1e-6;
+
 /// A mechanism at the pose at which its file starts it.
 #[derive(Debug)]
 pub(super) struct Drawn {
@@ -162,6 +165,11 @@ impl Drawn {
             }
         }
         found
+    }
+
+    /// Returns the distance within which two points are one \[m\].
+    pub(super) fn same(&self) -> f64 {
+        SAME * self.size() + f64::MIN_POSITIVE
     }
 
     /// Returns the size of what is drawn \[m\]: the longer side of the box around all markers.

@@ -3,10 +3,7 @@
 use serde_json::{Value, json};
 
 use super::drawn::Drawn;
-use crate::mechanism::{CoordinateKind, Joint, JointKind, MarkerId, Mechanism};
-
-/// Part of the drawing's size within which points are one.
-const SAME: f64 = 1e-6;
+use crate::mechanism::{Joint, JointKind, MarkerId, Mechanism};
 
 /// Describes what is drawn. Points are global \[m\], angles in radians.
 ///
@@ -29,10 +26,9 @@ pub(super) fn sketch(drawn: &Drawn) -> Value {
         "bodies": bodies(drawn, mechanism),
         "joints": mechanism.joints.iter().map(|joint| {
             let [x, y, angle] = drawn.place(joint.from);
-            let kind = kind(joint);
             json!({
                 "name": joint.name,
-                "type": kind,
+                "is_pin": matches!(joint.kind, JointKind::Revolute),
                 "at": [x, y],
                 "to": &drawn.place(joint.to)[..2],
                 "angle": angle,
@@ -43,16 +39,10 @@ pub(super) fn sketch(drawn: &Drawn) -> Value {
         "drivers": mechanism.drivers.iter().map(|driver| {
             let coordinate = driver.coordinate;
             let at = [coordinate.from, coordinate.to].map(|id| drawn.place(id));
-            let kind = match coordinate.kind {
-                CoordinateKind::Angle => "angle",
-                CoordinateKind::X => "x",
-                CoordinateKind::Y => "y",
-                CoordinateKind::Distance => "distance",
-            };
             json!({
                 "name": driver.name,
                 "is_free": driver.is_free(),
-                "coordinate": kind,
+                "coordinate": coordinate.kind.word(),
                 "at": &at[0][..2],
                 "to": &at[1][..2],
                 "markers": paths(mechanism, [coordinate.from, coordinate.to]),
@@ -72,7 +62,7 @@ pub(super) fn sketch(drawn: &Drawn) -> Value {
 }
 
 fn points(drawn: &Drawn, mechanism: &Mechanism, mut left: Vec<MarkerId>) -> Vec<Value> {
-    let near = SAME * drawn.size() + f64::MIN_POSITIVE;
+    let near = drawn.same();
     let mut points = Vec::new();
     while let Some(&first) = left.first() {
         let [x, y, angle] = drawn.place(first);
@@ -127,24 +117,4 @@ fn bodies(drawn: &Drawn, mechanism: &Mechanism) -> Vec<Value> {
 
 fn paths(mechanism: &Mechanism, markers: [MarkerId; 2]) -> [String; 2] {
     markers.map(|id| mechanism.marker_path(id))
-}
-
-/// Returns the type of a joint, as the file has it.
-fn kind(joint: &Joint) -> &'static str {
-    match &joint.kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Translational => "translational",
-        JointKind::Slot => "slot",
-        JointKind::Link { .. } => "link",
-        JointKind::RevoluteTranslational { .. } => "revolute_translational",
-        JointKind::Weld => "weld",
-        JointKind::Gear { .. } => "gear",
-        JointKind::Belt { .. } => "belt",
-        JointKind::RackAndPinion { .. } => "rack_and_pinion",
-        JointKind::Rolling { .. } => "rolling",
-        JointKind::Coupling(_) => "coupling",
-        JointKind::Cam { .. } => "cam",
-        JointKind::Rope(_) => "rope",
-        JointKind::Curve(_) => "curve",
-    }
 }

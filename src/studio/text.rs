@@ -418,6 +418,14 @@ pub(super) fn in_braces(name: &str, entries: &[(String, String)]) -> Option<Stri
     (name.len() + 3 + braces.len() <= LINE).then_some(braces)
 }
 
+/// Writes entries on lines.
+pub(super) fn in_lines(entries: &[(String, String)]) -> String {
+    let lines: Vec<String> = (entries.iter())
+        .map(|(key, value)| format!("{key} = {value}"))
+        .collect();
+    lines.join("\n")
+}
+
 /// Returns an item by its path.
 fn item_at<'a>(table: &'a Table, path: &[&str]) -> Option<&'a Item> {
     let (first, rest) = path.split_first()?;

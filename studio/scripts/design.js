@@ -281,7 +281,7 @@ export class Design {
       return moving[0].name;
     }
     const items = moving.map((joint) => [
-      `${joint.type === "revolute" ? "Pin" : "Slide"} ${joint.name}: ${joint.markers.join(" – ")}`,
+      `${joint.is_pin ? "Pin" : "Slide"} ${joint.name}: ${joint.markers.join(" – ")}`,
       joint.name,
     ]);
     return this.studio.choose(items, event);

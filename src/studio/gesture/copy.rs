@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::super::number::{angle, within_turn};
 use super::super::reference::references;
-use super::super::text::{TomlText, in_braces};
+use super::super::text::{TomlText, in_braces, in_lines};
 use super::{Editing, Refusal, names, number, point};
 use crate::mechanism::{Body, BodyId, Joint, JointKind, MarkerId};
 
@@ -183,20 +183,7 @@ fn copy_body(editing: &mut Editing, body: &Body, way: Way, frame: [f64; 3], name
             _ => lines.push(format!("{key} = {}", editing.text.value(&path))),
         }
     }
-    let braces = in_braces("markers", &markers).filter(|_| !markers.is_empty());
-    if let Some(braces) = &braces {
-        lines.insert(0, format!("markers = {braces}"));
-    }
-    editing
-        .text
-        .add_section(&["bodies", name], &lines.join("\n"));
-    if braces.is_none() && !markers.is_empty() {
-        let lines: Vec<String> = (markers.iter())
-            .map(|(marker, place)| format!("{marker} = {place}"))
-            .collect();
-        let section = ["bodies", name, "markers"];
-        editing.text.add_section(&section, &lines.join("\n"));
-    }
+    editing.write_body(name, &markers, lines);
 }
 
 /// Writes the copy of a marker.
@@ -282,12 +269,8 @@ fn copy_joint(
     match in_braces(&name, &entries) {
         Some(braces) => editing.text.set(&["joints", &name], &braces),
         None => {
-            let lines: Vec<String> = (entries.iter())
-                .map(|(key, value)| format!("{key} = {value}"))
-                .collect();
-            editing
-                .text
-                .add_section(&["joints", &name], &lines.join("\n"));
+            let section = ["joints", &*name];
+            editing.text.add_section(&section, &in_lines(&entries));
         }
     }
     Ok(())

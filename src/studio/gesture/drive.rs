@@ -6,21 +6,13 @@ use crate::mechanism::{Coordinate, JointKind};
 
 /// Drives the coordinate of a joint, from where it is drawn.
 pub(super) fn driver(editing: &mut Editing, name: &str) -> Result<(), Refusal> {
-    let (coordinate, keys, word) = coordinate(editing, name)?;
-    let start = editing.drawn.value(coordinate);
-    let start = editing.value(start, coordinate.kind.is_angle());
-    let name = editing.names.new_name(&word);
-    let value = format!("{{ {keys}, start = {start} }}");
-    editing.text.set(&["drivers", &name], &value);
-    Ok(())
+    start(editing, "drivers", name)
 }
 
 /// Lets the coordinate of a joint follow the forces. Where no body has a mass, the joint's bodies
 /// get one.
 pub(super) fn freedom(editing: &mut Editing, name: &str) -> Result<(), Refusal> {
-    let (coordinate, keys, word) = coordinate(editing, name)?;
-    let start = editing.drawn.value(coordinate);
-    let start = editing.value(start, coordinate.kind.is_angle());
+    start(editing, "freedoms", name)?;
     let mechanism = editing.mechanism()?;
     if mechanism.bodies.iter().all(|body| body.mass.is_none()) {
         let joint = editing.joint(name)?;
@@ -29,14 +21,23 @@ pub(super) fn freedom(editing: &mut Editing, name: &str) -> Result<(), Refusal> 
             give_mass(editing, &mechanism.bodies[body.index()], USUAL_MASS);
         }
     }
-    let name = editing.names.new_name(&word);
-    let value = format!("{{ {keys}, start = {start} }}");
-    editing.text.set(&["freedoms", &name], &value);
     Ok(())
 }
 
-/// Returns the coordinate of a joint that can be driven, its keys, and a word for it.
-fn coordinate(editing: &Editing, name: &str) -> Result<(Coordinate, String, String), Refusal> {
+/// Adds the coordinate of a joint to a section, with the value at which it is drawn.
+fn start(editing: &mut Editing, section: &str, joint: &str) -> Result<(), Refusal> {
+    let (coordinate, word) = coordinate(editing, joint)?;
+    let keys = editing.coordinate_keys(coordinate)?;
+    let start = editing.drawn.value(coordinate);
+    let start = editing.value(start, coordinate.kind.is_angle());
+    let name = editing.names.new_name(&word);
+    let value = format!("{{ {keys}, start = {start} }}");
+    editing.text.set(&[section, &name], &value);
+    Ok(())
+}
+
+/// Returns the coordinate of a joint that can be driven, and a word for it.
+fn coordinate(editing: &Editing, name: &str) -> Result<(Coordinate, String), Refusal> {
     let mechanism = editing.mechanism()?;
     let joint = editing.joint(name)?;
     let coordinate = joint.free_coordinate().ok_or_else(|| {
@@ -52,16 +53,6 @@ fn coordinate(editing: &Editing, name: &str) -> Result<(Coordinate, String, Stri
         return Err(format!("the {noun} `{}` moves this joint already", driver.name).into());
     }
     let [from, to] = [coordinate.from, coordinate.to];
-    let kind = if coordinate.kind.is_angle() {
-        "angle"
-    } else {
-        "x"
-    };
-    let keys = format!(
-        "coordinate = \"{kind}\", markers = [\"{}\", \"{}\"]",
-        mechanism.marker_path(from),
-        mechanism.marker_path(to)
-    );
     let body = editing.body_of(to)?;
     let body = if body == "ground" {
         editing.body_of(from)?
@@ -72,5 +63,5 @@ fn coordinate(editing: &Editing, name: &str) -> Result<(Coordinate, String, Stri
         JointKind::Revolute => format!("{body}_angle"),
         _ => format!("{body}_travel"),
     };
-    Ok((coordinate, keys, word))
+    Ok((coordinate, word))
 }

@@ -9,13 +9,13 @@ use super::{Editing, Refusal, marker_name, name};
 pub(super) fn join(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
     let (path, onto_path) = (name(gesture, "marker")?, name(gesture, "onto")?);
     let (marker, onto) = (editing.marker(path)?, editing.marker(onto_path)?);
-    let moved = editing.pinned_to(marker)?;
+    let moved = editing.drawn.pinned_to(marker);
     if moved.contains(&onto) {
         return Err(format!("`{path}` and `{onto_path}` are pinned to each other already").into());
     }
     let mechanism = editing.mechanism()?;
     let body_of = |id: crate::mechanism::MarkerId| mechanism.markers[id.index()].body;
-    let there = editing.pinned_to(onto)?;
+    let there = editing.drawn.pinned_to(onto);
     let shared = moved.iter().find_map(|id| {
         let other = there.iter().find(|other| body_of(**other) == body_of(*id));
         Some((*id, *other?))

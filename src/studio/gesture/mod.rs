@@ -55,13 +55,13 @@ use serde_json::Value;
 use super::drawn::{Drawn, inside};
 use super::names::Names;
 use super::number::angle;
-use super::text::{TomlText, in_braces};
-use crate::mechanism::{Body, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source, shortest};
+use super::text::{TomlText, in_braces, in_lines};
+use crate::mechanism::{
+    Body, Coordinate, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source, shortest,
+};
 
 /// Decimals of angles \[deg\].
 const ANGLE_DECIMALS: usize = 3;
-/// Part of the drawing's size within which two points are one.
-const SAME: f64 = 1e-6;
 
 /// The reason why a gesture changes nothing, for the reader.
 #[derive(Clone, Debug, PartialEq)]
@@ -351,23 +351,37 @@ impl<'a> Editing<'a> {
         let entries: Vec<(String, String)> = (markers.iter())
             .map(|(marker, inside)| (marker.clone(), self.place(*inside)))
             .collect();
-        let estimate = self.estimate(frame);
-        match in_braces("markers", &entries) {
-            Some(braces) => {
-                let lines = format!("markers = {braces}\nestimate = {estimate}");
-                self.text.add_section(&["bodies", &name], &lines);
-            }
-            None => {
-                let lines = format!("estimate = {estimate}");
-                self.text.add_section(&["bodies", &name], &lines);
-                let lines: Vec<String> = (entries.iter())
-                    .map(|(marker, place)| format!("{marker} = {place}"))
-                    .collect();
-                let section = ["bodies", &name, "markers"];
-                self.text.add_section(&section, &lines.join("\n"));
-            }
-        }
+        let estimate = format!("estimate = {}", self.estimate(frame));
+        self.write_body(&name, &entries, vec![estimate]);
         name
+    }
+
+    /// Writes a new body: markers with their places, and further lines.
+    pub(super) fn write_body(
+        &mut self,
+        name: &str,
+        markers: &[(String, String)],
+        mut lines: Vec<String>,
+    ) {
+        let braces = in_braces("markers", markers).filter(|_| !markers.is_empty());
+        if let Some(braces) = &braces {
+            lines.insert(0, format!("markers = {braces}"));
+        }
+        self.text.add_section(&["bodies", name], &lines.join("\n"));
+        if braces.is_none() && !markers.is_empty() {
+            let section = ["bodies", name, "markers"];
+            self.text.add_section(&section, &in_lines(markers));
+        }
+    }
+
+    /// Writes the keys of a coordinate.
+    pub(super) fn coordinate_keys(&self, coordinate: Coordinate) -> Result<String, Refusal> {
+        let mechanism = self.mechanism()?;
+        let [from, to] = [coordinate.from, coordinate.to].map(|id| mechanism.marker_path(id));
+        let kind = coordinate.kind.word();
+        Ok(format!(
+            "coordinate = \"{kind}\", markers = [\"{from}\", \"{to}\"]"
+        ))
     }
 
     /// Adds a joint between two markers; returns its name.
@@ -378,14 +392,9 @@ impl<'a> Editing<'a> {
         name
     }
 
-    /// Returns all markers that are pinned to a marker, itself among them.
-    pub(super) fn pinned_to(&self, marker: MarkerId) -> Result<Vec<MarkerId>, Refusal> {
-        Ok(self.drawn.pinned_to(marker))
-    }
-
     /// Returns the distance within which two points are one \[m\].
     pub(super) fn same(&self) -> f64 {
-        SAME * self.drawn.size() + f64::MIN_POSITIVE
+        self.drawn.same()
     }
 }
 

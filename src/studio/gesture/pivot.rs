@@ -6,7 +6,7 @@ use super::{Editing, Refusal, marker_name};
 pub(super) fn pivot(editing: &mut Editing, path: &str) -> Result<(), Refusal> {
     let marker = editing.marker(path)?;
     let mechanism = editing.mechanism()?;
-    let pinned = editing.pinned_to(marker)?;
+    let pinned = editing.drawn.pinned_to(marker);
     if pinned
         .iter()
         .any(|id| mechanism.markers[id.index()].body.is_none())

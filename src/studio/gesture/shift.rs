@@ -132,7 +132,7 @@ fn move_rounded(
     let mechanism = editing.mechanism()?;
     let mut moved: BTreeSet<MarkerId> = BTreeSet::new();
     for marker in markers {
-        moved.extend(editing.pinned_to(*marker)?);
+        moved.extend(editing.drawn.pinned_to(*marker));
     }
     let meant = meant(editing, mechanism, &moved, by, is_rounded);
     let mut parts = Parts::default();

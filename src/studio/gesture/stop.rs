@@ -2,8 +2,9 @@
 
 use serde_json::Value;
 
-use super::{Editing, Refusal};
-use crate::mechanism::{Coordinate, CoordinateKind, rounded};
+use super::super::number::angle;
+use super::{ANGLE_DECIMALS, Editing, Refusal};
+use crate::mechanism::{Coordinate, CoordinateKind, Mechanism, rounded};
 
 /// Usual way of an angle to each of its stops \[rad\].
 const ANGLE: f64 = std::f64::consts::PI / 6.0;
@@ -21,9 +22,9 @@ pub(super) fn stop(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
     let mechanism = editing.mechanism()?;
     let (coordinate, keys, word) = match (gesture["driver"].as_str(), gesture["joint"].as_str()) {
         (Some(name), _) => {
-            let coordinate = named(editing, name);
-            let coordinate = coordinate
-                .ok_or_else(|| Refusal::Because(format!("there is no driver `{name}`")))?;
+            let named = known(mechanism).find(|(known, _)| *known == name);
+            let (_, coordinate) =
+                named.ok_or_else(|| Refusal::Because(format!("there is no driver `{name}`")))?;
             (coordinate, format!("of = \"{name}\""), name.to_owned())
         }
         (None, Some(name)) => {
@@ -33,17 +34,9 @@ pub(super) fn stop(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
                      slide"
                 ))
             })?;
-            let drivers = mechanism.drivers.iter().map(|d| (&d.name, d.coordinate));
-            let measures = mechanism.measures.iter().map(|m| (&m.name, m.coordinate));
-            let mut known = drivers.chain(measures);
-            let keys = match known.find(|(_, other)| *other == coordinate) {
+            let keys = match known(mechanism).find(|(_, other)| *other == coordinate) {
                 Some((known, _)) => format!("of = \"{known}\""),
-                None => format!(
-                    "coordinate = \"{}\", markers = [\"{}\", \"{}\"]",
-                    coordinate.kind.word(),
-                    mechanism.marker_path(coordinate.from),
-                    mechanism.marker_path(coordinate.to)
-                ),
+                None => editing.coordinate_keys(coordinate)?,
             };
             (coordinate, keys, name.to_owned())
         }
@@ -56,15 +49,12 @@ pub(super) fn stop(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
     Ok(())
 }
 
-/// Returns the coordinate of a driver, a freedom or a measure.
-fn named(editing: &Editing, name: &str) -> Option<Coordinate> {
-    let mechanism = editing.mechanism().ok()?;
-    let drivers = mechanism.drivers.iter().map(|d| (&d.name, d.coordinate));
-    let measures = mechanism.measures.iter().map(|m| (&m.name, m.coordinate));
-    let mut known = drivers.chain(measures);
-    known
-        .find(|(known, _)| *known == name)
-        .map(|(_, coordinate)| coordinate)
+/// Returns the names and coordinates of drivers, freedoms and measures.
+fn known(mechanism: &Mechanism) -> impl Iterator<Item = (&str, Coordinate)> {
+    let drivers = mechanism.drivers.iter();
+    let drivers = drivers.map(|driver| (&*driver.name, driver.coordinate));
+    let measures = mechanism.measures.iter();
+    drivers.chain(measures.map(|measure| (&*measure.name, measure.coordinate)))
 }
 
 /// Writes the limits of a coordinate, which have its present value between them.
@@ -102,8 +92,9 @@ fn limits(editing: &Editing, gesture: &Value, coordinate: Coordinate) -> Result<
     {
         return Err("`min` is not below `max`".into());
     }
+    // A limit may be turns away.
     let write = |value: f64| match is_angle {
-        true => super::super::number::angle(value, super::ANGLE_DECIMALS),
+        true => angle(value, ANGLE_DECIMALS),
         false => editing.length(value),
     };
     let limits = [("min", min), ("max", max)].into_iter();

@@ -45,7 +45,7 @@ impl Centre {
             }
         };
         let mechanism = editing.mechanism()?;
-        let pinned = editing.pinned_to(editing.marker(&path)?)?;
+        let pinned = editing.drawn.pinned_to(editing.marker(&path)?);
         let wheels = mechanism.joints.iter().flat_map(|joint| match joint.kind {
             JointKind::Gear { .. } | JointKind::Belt { .. } => vec![joint.from, joint.to],
             JointKind::RackAndPinion { .. } | JointKind::Rolling { .. } => vec![joint.from],
