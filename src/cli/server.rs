@@ -5,6 +5,8 @@ use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::Duration;
 
+use clap::Args;
+
 use super::error::Error;
 
 /// Largest size of the head of a request, and of its body: that of a mechanism file.
@@ -16,6 +18,19 @@ const PATIENCE: Duration = Duration::from_secs(2);
 pub(super) const PAGE: &str = "text/html";
 pub(super) const TEXT: &str = "text/plain";
 pub(super) const SCRIPT: &str = "text/javascript";
+
+/// The option of commands that serve.
+#[derive(Args, Debug)]
+pub(super) struct Listening {
+    /// The port to listen on [default: a free one].
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    port: u16,
+}
 
 /// A server that listens on the loopback address only.
 pub(super) struct Server {
@@ -77,7 +92,8 @@ impl Answer {
 }
 
 impl Server {
-    pub(super) fn new(port: u16) -> Result<Self, Error> {
+    pub(super) fn new(listening: &Listening) -> Result<Self, Error> {
+        let port = listening.port;
         let listen = || {
             let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
             let port = listener.local_addr()?.port();

@@ -14,7 +14,7 @@ use crate::cli::live;
 use crate::cli::output::{print, tell_written, write};
 use crate::cli::page_solver::{self, Solver};
 use crate::cli::runtime;
-use crate::cli::server::{Answer, PAGE, Request, SCRIPT, Server, TEXT, token};
+use crate::cli::server::{Answer, Listening, PAGE, Request, SCRIPT, Server, TEXT, token};
 use crate::cli::studio_page::{Beginning, page, part};
 use crate::mechanism::{Mechanism, Source, is_identifier};
 
@@ -41,14 +41,8 @@ pub(in crate::cli) struct Studio {
     /// program].
     #[arg(long, value_name = "FOLDER")]
     runtime: Option<PathBuf>,
-    /// The port to listen on [default: a free one].
-    #[arg(
-        long,
-        value_name = "PORT",
-        default_value_t = 0,
-        hide_default_value = true
-    )]
-    port: u16,
+    #[command(flatten)]
+    listening: Listening,
 }
 
 /// The parts of a studio besides its page.
@@ -116,7 +110,7 @@ impl Studio {
         if let Some(file) = &self.file {
             read(file).map_err(Error::read(file))?;
         }
-        let server = Server::new(self.port)?;
+        let server = Server::new(&self.listening)?;
         let _ = print(&format!("{}\n", server.address()));
         let token = token();
         server.serve(|request| match (&*request.method, &*request.path) {

@@ -18,7 +18,7 @@ use crate::cli::message::{Message, tell};
 use crate::cli::output::print;
 use crate::cli::page_solver;
 use crate::cli::render::render;
-use crate::cli::server::{Answer, PAGE, Request, Server, TEXT, token};
+use crate::cli::server::{Answer, Listening, PAGE, Request, Server, TEXT, token};
 use crate::drawing::animation::{fill, page_with, player};
 use crate::drawing::svg::escape;
 use crate::mechanism::Mechanism;
@@ -40,14 +40,8 @@ pub(in crate::cli) struct Watch {
     file: PathBuf,
     #[command(flatten)]
     conditions: Conditions,
-    /// The port to listen on [default: a free one].
-    #[arg(
-        long,
-        value_name = "PORT",
-        default_value_t = 0,
-        hide_default_value = true
-    )]
-    port: u16,
+    #[command(flatten)]
+    listening: Listening,
 }
 
 impl Watch {
@@ -62,7 +56,7 @@ impl Watch {
             true => page_solver::find(page_solver::Solver::Page)?,
             false => None,
         };
-        let server = Server::new(self.port)?;
+        let server = Server::new(&self.listening)?;
         if solver.is_none() && self.conditions.is_empty() {
             let note = "no solver for pages was found, so the page plays a motion and cannot be \
                         moved by hand: run `make page` and `make install`";
