@@ -1,10 +1,10 @@
-"""Write runtime/licenses.txt and page/licenses.txt: the licences of what is inside the runtime
-libraries, and inside the solver for pages.
+"""Write the files licenses.txt: the licences of what is inside the runtime libraries, the solvers for
+browsers, and the program with its Python module.
 
     scripts/licences.py           writes the files
     scripts/licences.py --check   fails if they are out of date
 
-The texts go into each FMU's documentation/licenses, and into each page. Needs cargo and Python 3.10 or newer.
+The texts go into each FMU's documentation/licenses, into each page and into releases. Needs cargo and Python 3.10 or newer.
 """
 
 import json
@@ -40,6 +40,13 @@ NOTICES = {
         ("wasm32-unknown-unknown",),
         "The solver in this page is biela",
         "this page",
+    ),
+    # The module holds the program, too.
+    ROOT / "python" / "licenses.txt": (
+        "biela-python",
+        RUNTIME_TARGETS,
+        "This is biela, the program and the Python module",
+        "your file",
     ),
 }
 # Licences in the order in which one is chosen where a crate leaves the choice, each with words of

@@ -54,9 +54,10 @@ def content(program: Path) -> dict[str, Path]:
         files |= {f"share/biela/{path.relative_to(ROOT)}": path for path in paths}
     for name in ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"]:
         files[f"share/biela/{name}"] = ROOT / name
-    # Of what is inside the libraries, and inside the solver for pages.
-    for name in ["runtime", "page"]:
-        files[f"share/biela/licenses/{name}.txt"] = ROOT / name / "licenses.txt"
+    # Of what is inside program, libraries and solvers.
+    inside = {"program": "python", "runtime": "runtime", "page": "page", "studio": "studio", "editor": "studio/editor"}
+    for name, folder in inside.items():
+        files[f"share/biela/licenses/{name}.txt"] = ROOT / folder / "licenses.txt"
     return dict(sorted((name.replace(os.sep, "/"), path) for name, path in files.items()))
 
 
