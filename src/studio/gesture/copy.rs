@@ -1,4 +1,5 @@
-//! Bodies that are duplicated or mirrored, with the joints among them and with ground.
+//! Bodies that are duplicated or mirrored, with the joints among them and with ground; duplicates with
+//! what drives and loads them, too.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +9,7 @@ use super::super::number::{angle, within_turn};
 use super::super::reference::references;
 use super::super::text::{TomlText, in_braces, in_lines};
 use super::{Editing, Refusal, names, number, point};
-use crate::mechanism::{Body, BodyId, Joint, JointKind, MarkerId};
+use crate::mechanism::{Body, BodyId, Joint, JointKind, MarkerId, Mechanism};
 
 /// The way from a body to its copy.
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +56,12 @@ impl Copies {
     }
 }
 
+/// Sections whose entries are duplicated with all bodies that they name.
+const DUPLICATED: [&str; 4] = ["drivers", "freedoms", "forces", "stops"];
+
 /// Copies `bodies`: moved `by` a way, or mirrored over the line through `at` at an `angle`. The joints
-/// among them and with ground are copied, too, with points of ground of their own.
+/// among them and with ground are copied, too, with points of ground of their own; where they are not
+/// mirrored, also their drivers, freedoms, forces and stops.
 pub(super) fn copy(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
     let mechanism = editing.mechanism()?;
     let way = match gesture["kind"].as_str() {
@@ -114,20 +119,90 @@ pub(super) fn copy(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
     }
     for joint in &joints {
         for id in joint.markers() {
-            let marker = &mechanism.markers[id.index()];
-            let path = mechanism.marker_path(id);
-            if marker.body.is_none() && !copies.ground.contains_key(&path) {
-                let name = editing.ground_name(stem(&marker.name));
-                let place = way.frame(editing.drawn.inside(id));
-                let copy = editing.add_marker("ground", &name, place);
-                copies.ground.insert(path, copy);
-            }
+            copy_ground(editing, mechanism, id, way, &mut copies);
         }
     }
     for joint in joints {
         copy_joint(editing, joint, way, &copies)?;
     }
+    if !way.is_mirror() {
+        for section in DUPLICATED {
+            for entry in editing.text.keys(&[section]) {
+                copy_entry(editing, mechanism, [section, &entry], way, &mut copies)?;
+            }
+        }
+    }
     Ok(())
+}
+
+/// Copies a marker if it is one of ground and has no copy yet.
+fn copy_ground(
+    editing: &mut Editing,
+    mechanism: &Mechanism,
+    id: MarkerId,
+    way: Way,
+    copies: &mut Copies,
+) {
+    let marker = &mechanism.markers[id.index()];
+    let path = mechanism.marker_path(id);
+    if marker.body.is_none() && !copies.ground.contains_key(&path) {
+        let name = editing.ground_name(stem(&marker.name));
+        let place = way.frame(editing.drawn.inside(id));
+        let copy = editing.add_marker("ground", &name, place);
+        copies.ground.insert(path, copy);
+    }
+}
+
+/// Adds the copy of an entry if it names bodies and all of them have copies.
+fn copy_entry(
+    editing: &mut Editing,
+    mechanism: &Mechanism,
+    own: [&str; 2],
+    way: Way,
+    copies: &mut Copies,
+) -> Result<(), Refusal> {
+    let all = references(&editing.text);
+    let named: Vec<&str> = (all.iter())
+        .filter(|found| found.is_in(&own))
+        .map(|found| &*found.name)
+        .collect();
+    let mut grounds = Vec::new();
+    let mut has_copy = false;
+    for name in named {
+        let head = name.split('.').next().unwrap_or(name);
+        if head == "ground" {
+            grounds.extend(editing.drawn.marker(name));
+        } else if copies.bodies.contains_key(head) {
+            has_copy = true;
+        } else if mechanism.parameter_id(head).is_none() && editing.names.is_taken(head) {
+            // A body that stays alone, a joint or a driver.
+            return Ok(());
+        }
+    }
+    if !has_copy {
+        return Ok(());
+    }
+    for id in grounds {
+        copy_ground(editing, mechanism, id, way, copies);
+    }
+    let mut entries = Vec::new();
+    for key in editing.text.keys(&own) {
+        let value = editing.text.value(&[own[0], own[1], &key]);
+        let value = renamed([own[0], &key], &value, copies)?;
+        entries.push((key, value));
+    }
+    write_entry(editing, own, &entries);
+    Ok(())
+}
+
+/// Writes the copy of an entry of a section, under a new name.
+fn write_entry(editing: &mut Editing, [section, name]: [&str; 2], entries: &[(String, String)]) {
+    let name = editing.names.new_name(stem(name));
+    let path = [section, &*name];
+    match in_braces(&name, entries) {
+        Some(braces) => editing.text.set(&path, &braces),
+        None => editing.text.add_section(&path, &in_lines(entries)),
+    }
 }
 
 /// Refuses to mirror what has a shape of its own.
@@ -247,7 +322,7 @@ fn copy_joint(
     let mut entries = Vec::new();
     for key in editing.text.keys(&own) {
         let value = editing.text.value(&[own[0], own[1], &key]);
-        let mut value = renamed(&key, &value, copies)?;
+        let mut value = renamed(["joints", &key], &value, copies)?;
         if way.is_mirror() {
             value = mirrored(&key, value);
         }
@@ -265,14 +340,7 @@ fn copy_joint(
     {
         entries.push(("side".to_owned(), "\"below\"".to_owned()));
     }
-    let name = editing.names.new_name(stem(&joint.name));
-    match in_braces(&name, &entries) {
-        Some(braces) => editing.text.set(&["joints", &name], &braces),
-        None => {
-            let section = ["joints", &*name];
-            editing.text.add_section(&section, &in_lines(&entries));
-        }
-    }
+    write_entry(editing, own, &entries);
     Ok(())
 }
 
@@ -302,9 +370,9 @@ fn mirror_phase(
     }
 }
 
-/// Writes a value of a joint with the names of the copies.
-fn renamed(key: &str, value: &str, copies: &Copies) -> Result<String, Refusal> {
-    let head = format!("joints.copy.{key} = ");
+/// Writes a value of an entry of a section with the names of the copies.
+fn renamed([section, key]: [&str; 2], value: &str, copies: &Copies) -> Result<String, Refusal> {
+    let head = format!("{section}.copy.{key} = ");
     let text = TomlText::new(format!("{head}{value}"));
     let mut text = text.map_err(|error| error.to_string())?;
     let parts: Vec<_> = (references(&text).into_iter())

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::super::drawn::{Drawn, inside, outside};
 use super::super::number::within_turn;
+use super::mass::followed;
 use super::{Editing, Refusal, point};
 use crate::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, constant, shortest};
 
@@ -45,7 +46,7 @@ impl Parts {
         self.replaced.push((place, with));
     }
 
-    /// Takes the numbers of markers and estimates.
+    /// Takes the numbers of markers, of masses that follow them, and of estimates.
     fn take(
         &mut self,
         editing: &Editing,
@@ -58,6 +59,17 @@ impl Parts {
         }
         for (body, frame) in &meant.frames {
             set_estimate(editing, self, mechanism, BodyId(*body), *frame);
+        }
+        for body in &mechanism.bodies {
+            if body.markers.iter().any(|id| meant.inside.contains_key(id)) {
+                let inside = |id: MarkerId| {
+                    let place = meant.inside.get(&id).copied();
+                    place.unwrap_or_else(|| editing.drawn.inside(id))
+                };
+                for (place, with) in followed(editing, body, inside) {
+                    self.replace(place, with);
+                }
+            }
         }
         Ok(())
     }

@@ -32,7 +32,46 @@ fn a_duplicate_has_bodies_joints_and_points_of_its_own() {
         let off = [u - x, v - y - 0.5, psi - phi];
         assert!(off.iter().all(|part| part.abs() < 2e-3), "{body}: {off:?}");
     }
-    assert_eq!(state(&view), "undriven");
+    assert_eq!(state(&view), "driven");
+}
+
+#[test]
+fn a_duplicate_has_the_forces_on_its_bodies_and_on_no_other() {
+    let text = r#"format = 1
+name = "two_doors"
+
+[parameters]
+stiffness = 400
+
+[ground.markers]
+A = [0, 0]
+S = [0.1, 0.1]
+
+[bodies.door]
+mass = 2
+markers = { A = [0, 0], B = [0.3, 0] }
+
+[bodies.flap]
+markers = { B = [0, 0], C = [0.1, 0] }
+
+[joints]
+A = { type = "revolute", markers = ["ground.A", "door.A"] }
+B = { type = "revolute", markers = ["door.B", "flap.B"] }
+
+[forces]
+closer = { coordinate = "distance", markers = ["ground.S", "door.B"], stiffness = "stiffness", free = 0.2 }
+between = { coordinate = "distance", markers = ["door.A", "flap.C"], stiffness = 100, free = 0.3 }
+
+[freedoms]
+swing = { coordinate = "angle", markers = ["ground.A", "door.A"] }
+
+[drivers]
+tilt = { coordinate = "angle", markers = ["door.B", "flap.B"], start = 0.2 }
+"#;
+    let mut host = super::studio(text);
+    let gesture = json!({ "kind": "duplicate", "bodies": ["door"], "by": [0, 0.5] });
+    act(&mut host, &gesture);
+    insta::assert_snapshot!(host.text());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{EMPTY, act, ask, refusal, shipped_studio, state, studio};
+use super::{EMPTY, act, act_warned, ask, refusal, shipped_studio, state, studio};
 
 fn ground(x: f64, y: f64) -> Value {
     json!({ "at": [x, y], "ground": true })
@@ -164,4 +164,40 @@ fn an_element_of_a_list_is_put() {
         refusal(&mut host, &far),
         "`bodies.boom.center` has no number 5"
     );
+}
+
+#[test]
+fn a_mass_follows_its_bar_until_it_has_numbers_of_its_own() {
+    let mut host = studio(EMPTY);
+    let points = json!([{ "at": [0, 0] }, { "at": [0.2, 0] }]);
+    act_warned(&mut host, &json!({ "kind": "link", "points": points }));
+    act_warned(&mut host, &json!({ "kind": "mass", "body": "link" }));
+    // m l² / 12 = 0.04 / 12.
+    assert!(
+        host.text().contains("inertia = 0.00333\n"),
+        "{}",
+        host.text()
+    );
+    assert!(host.text().contains("center = [0.1, 0]\n"));
+    let ends = ["link.A", "link.B"];
+    let length = |value: f64| json!({ "kind": "length", "markers": ends, "value": value });
+    act_warned(&mut host, &length(0.3));
+    // 0.09 / 12.
+    assert!(
+        host.text().contains("inertia = 0.0075\n"),
+        "{}",
+        host.text()
+    );
+    assert!(host.text().contains("center = [0.15, 0]\n"));
+    let path = ["bodies", "link", "inertia"];
+    act_warned(
+        &mut host,
+        &json!({ "kind": "put", "path": path, "value": "0.01" }),
+    );
+    act_warned(
+        &mut host,
+        &json!({ "kind": "shift", "markers": [ends[1]], "by": [0.1, 0.0] }),
+    );
+    assert!(host.text().contains("inertia = 0.01\n"), "{}", host.text());
+    assert!(host.text().contains("center = [0.2, 0]\n"));
 }
