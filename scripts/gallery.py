@@ -1,13 +1,16 @@
 """Writes the gallery into target/gallery: each shipped mechanism as a page on which it is moved by
-hand, and an index of their pictures. One static folder; the pages share one solver."""
+hand, and an index of their pictures. One static folder; the pages share one solver, and lead to the
+studio of `make studio`, if there is one."""
 
 import html
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 OUT = ROOT / "target" / "gallery"
+STUDIO = ROOT / "target" / "studio"
 PROGRAM = ROOT / "target" / "release" / "biela"
 SOLVER = "solver.js"
 
@@ -47,11 +50,17 @@ def description(text: str) -> str:
 
 def main() -> None:
     OUT.mkdir(parents=True, exist_ok=True)
+    studio = []
+    if (STUDIO / "index.html").is_file():
+        shutil.copytree(STUDIO, OUT / "studio", dirs_exist_ok=True)
+        studio = ["--studio", "studio/index.html"]
+    else:
+        print("without `make studio`, the pages do not lead to a studio")
     entries = []
     for file in sorted((ROOT / "mechanisms").glob("*.toml")):
         name = file.stem
         page = OUT / f"{name}.html"
-        subprocess.run([PROGRAM, "page", file, "--share", SOLVER, "-o", page], check=True)
+        subprocess.run([PROGRAM, "page", file, "--share", SOLVER, *studio, "-o", page], check=True)
         picture = OUT / f"{name}.svg"
         subprocess.run([PROGRAM, "draw", file, "-o", picture], check=True)
         text = html.escape(description(file.read_text(encoding="utf-8")))
@@ -61,7 +70,7 @@ def main() -> None:
         )
     index = PAGE.format(entries="\n".join(entries))
     (OUT / "index.html").write_text(index, encoding="utf-8")
-    size = sum(part.stat().st_size for part in OUT.iterdir())
+    size = sum(part.stat().st_size for part in OUT.rglob("*") if part.is_file())
     print(f"{OUT / 'index.html'}: {len(entries)} mechanisms, {size / 1e6:.1f} MB")
 
 

@@ -1,11 +1,16 @@
 // A hand that pulls bodies, by mouse or finger; by a spring while freedoms move. The wheel zooms, and
-// what is zoomed is moved by its bare sheet.
+// what is zoomed is moved by its bare sheet. A click shows the path of the point there.
+
+// Way of the pointer up to which a press is a click [pixels].
+const CLICK = 4;
 
 /** Lets the pointer pull the bodies of a picture; `live` solves and draws. */
 export function giveHand(paper, live) {
   let held = null;
   let waiting = false;
   let panned = null;
+  // Where the pointer was pressed, until it has moved further than in a click.
+  let pressed = null;
 
   paper.addEventListener(
     "wheel",
@@ -27,6 +32,7 @@ export function giveHand(paper, live) {
     if (event.button !== 0 || held) {
       return;
     }
+    pressed = [event.clientX, event.clientY];
     const body = live.picture.bodyAt(event.clientX, event.clientY);
     if (body === null) {
       if (live.picture.zoomed) {
@@ -38,10 +44,6 @@ export function giveHand(paper, live) {
     }
     event.preventDefault();
     paper.setPointerCapture(event.pointerId);
-    if (!live.flies) {
-      live.play.stop();
-      live.keep();
-    }
     const at = live.picture.onSheet(event.clientX, event.clientY);
     const answer = live.ask({ do: "grab", body, at });
     held = answer && { id: event.pointerId, body, grip: answer.grip, at };
@@ -60,6 +62,16 @@ export function giveHand(paper, live) {
   }
 
   paper.addEventListener("pointermove", (event) => {
+    if (pressed) {
+      if (Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) <= CLICK) {
+        return;
+      }
+      pressed = null;
+      if (held && !live.flies) {
+        live.play.stop();
+        live.keep();
+      }
+    }
     if (panned?.id === event.pointerId) {
       live.picture.pan(panned.at, live.picture.onSheet(event.clientX, event.clientY));
       return;
@@ -76,7 +88,8 @@ export function giveHand(paper, live) {
   });
 
   function release(event) {
-    panned = null;
+    const clicked = pressed && event.type === "pointerup" ? (held ?? { body: null }) : null;
+    pressed = panned = null;
     if (held?.id === event.pointerId) {
       if (waiting) {
         pull();
@@ -88,6 +101,9 @@ export function giveHand(paper, live) {
       }
       paper.classList.remove("held");
       live.settle();
+    }
+    if (clicked) {
+      live.course.trace(clicked);
     }
   }
   paper.addEventListener("pointerup", release);

@@ -2,8 +2,10 @@
 
 import { Chart } from "./chart.js";
 import { Row, add, say, shown } from "./controls.js";
+import { Course } from "./course.js";
 import { connectSaving } from "./files.js";
 import { giveHand } from "./hand.js";
+import { linkTo } from "./link.js";
 import { Picture } from "./picture.js";
 import { Play } from "./play.js";
 import { Broken, Solver, unpack } from "./solver.js";
@@ -22,6 +24,7 @@ export class Live {
     this.picture = new Picture(this.find(".paper"));
     this.play = new Play(this, this.find);
     this.chart = new Chart(this, this.find);
+    this.course = new Course(this, this.find);
     this.connect();
     this.open(file);
   }
@@ -89,6 +92,7 @@ export class Live {
     }
     this.file = file;
     this.find(".text").value = file.text;
+    this.course.forget();
     this.show(page, this.ask({ do: "picture" }), false);
     this.tellOutcome({ outcome: "reached" });
     for (const warning of this.page.warnings) {
@@ -130,6 +134,7 @@ export class Live {
     this.chart.offer(page);
     this.draw();
     this.chart.draw();
+    this.course.draw();
   }
 
   draw() {
@@ -156,6 +161,7 @@ export class Live {
     this.find(".clock").textContent = [time, this.play.slowness].filter(Boolean).join(", ");
     this.find(".time").value = frame[0];
     this.chart.move();
+    this.course.move();
   }
 
   /** Tells the speeds at which rates and forces are shown. */
@@ -306,6 +312,7 @@ export class Live {
       this.picture.show(answer.picture, keep);
       this.drivers.forEach((row, index) => row?.bound(this.page.ranges[index]));
       this.draw();
+      this.course.draw();
     }
   }
 
@@ -313,6 +320,8 @@ export class Live {
   settle() {
     if (!this.picture.zoomed && this.picture.leaves) {
       this.redraw(false);
+    } else {
+      this.course.draw();
     }
     this.chart.draw();
   }
@@ -394,6 +403,7 @@ export class Live {
       a: toggle("acceleration"),
       f: toggle("force"),
       n: toggle("names"),
+      o: () => find(".poses").click(),
     };
     document.addEventListener("keydown", (event) => {
       const { target, key } = event;
@@ -416,6 +426,7 @@ export class Live {
       }
     });
     this.connectFile();
+    this.connectStudio();
   }
 
   /** Moves what plays by a small step. */
@@ -450,6 +461,20 @@ export class Live {
           this.chart.draw();
         }
       });
+    });
+  }
+
+  /** With the address of a studio the mechanism opens there, as it is here. */
+  connectStudio() {
+    const button = this.find(".edit");
+    const { studio } = this.root.dataset;
+    button.hidden = !studio;
+    button.addEventListener("click", async () => {
+      const { text } = this.ask({ do: "text" }) ?? {};
+      if (text) {
+        const link = await linkTo(studio, { ...this.file, text });
+        add(this.root, "a", { href: link, target: "_blank", hidden: true }).click();
+      }
     });
   }
 

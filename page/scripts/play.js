@@ -19,6 +19,7 @@ export class Play {
     this.slowdown = 1;
     this.speed.addEventListener("change", () => (this.slowdown = 1));
     this.button.addEventListener("click", () => this.toggle());
+    this.what.addEventListener("change", () => live.course.draw());
   }
 
   /** Offers what can move: time, and the drivers that are inputs. */
@@ -35,6 +36,11 @@ export class Play {
       const most = Math.min(1, Math.max(page.stop - page.start, speeds[0]));
       this.speed.value = Math.max(...speeds.filter((speed) => speed <= most));
     }
+  }
+
+  /** The driver that moves, null for time. */
+  get driver() {
+    return ["time", ""].includes(this.what.value) ? null : Number(this.what.value);
   }
 
   toggle() {
@@ -72,7 +78,7 @@ export class Play {
   get pace() {
     const { frame, places, page } = this.live;
     const chosen = Number(this.speed.value);
-    const played = this.what.value === "time" ? page.drivers.keys() : [Number(this.what.value)];
+    const played = this.driver === null ? page.drivers.keys() : [this.driver];
     const turning = [...played].map((driver) =>
       page.drivers[driver].is_angle ? Math.abs(frame[places.drivers + 3 * driver + 1]) : 0,
     );
@@ -95,7 +101,7 @@ export class Play {
   /** Moves on by a time [s]. */
   advance(seconds) {
     const { live } = this;
-    if (this.what.value === "time") {
+    if (this.driver === null) {
       const { start, stop, is_free } = live.page;
       let time = live.frame[0] + this.direction * seconds;
       // Free motion has no end.
@@ -112,7 +118,7 @@ export class Play {
       }
       return;
     }
-    const driver = Number(this.what.value);
+    const { driver } = this;
     const at = live.places.drivers + 3 * driver;
     const [value, velocity] = live.frame.slice(at, at + 2);
     const range = live.page.ranges[driver];

@@ -125,7 +125,7 @@ pub(super) fn documents(
         // The FMU depends on what is in the file, not on the file's name.
         let name = format!("{}.toml", input.mechanism.name);
         let source = Source::new(name, input.source.text());
-        let page = live::page(&source, &input.mechanism, &solver);
+        let page = live::page(&source, &input.mechanism, &solver, None);
         documents.push(document("documentation/page.html", page.into_bytes()));
     }
     Ok(documents)

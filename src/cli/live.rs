@@ -19,7 +19,7 @@ const SHARED: &str = include_str!("../../page/scripts/shared.js");
 /// Style of the part.
 pub(super) const STYLE: &str = include_str!("../../page/scripts/live.css");
 /// The scripts of a mechanism; each uses only those before it.
-pub(super) const SCRIPTS: [&str; 9] = [
+pub(super) const SCRIPTS: [&str; 11] = [
     include_str!("../../page/scripts/solver.js"),
     include_str!("../../page/scripts/picture.js"),
     include_str!("../../page/scripts/hand.js"),
@@ -27,7 +27,9 @@ pub(super) const SCRIPTS: [&str; 9] = [
     include_str!("../../page/scripts/play.js"),
     include_str!("../../page/scripts/axis.js"),
     include_str!("../../page/scripts/chart.js"),
+    include_str!("../../page/scripts/course.js"),
     include_str!("../../page/scripts/files.js"),
+    include_str!("../../page/scripts/link.js"),
     include_str!("../../page/scripts/live.js"),
 ];
 
@@ -35,26 +37,37 @@ pub(super) const SCRIPTS: [&str; 9] = [
 const START: &str = include_str!("../../page/scripts/start.js");
 
 /// Returns a page for a mechanism: one HTML file, with this element for the solver; see [`solver`].
-pub(super) fn page(source: &Source, mechanism: &Mechanism, solver: &str) -> String {
-    let main = main(source, mechanism, None) + solver + &script();
+/// Its *Edit* leads to a `studio`, if there is one.
+pub(super) fn page(
+    source: &Source,
+    mechanism: &Mechanism,
+    solver: &str,
+    studio: Option<&str>,
+) -> String {
+    let main = main(source, mechanism, &attribute("studio", studio)) + solver + &script();
     page_with(&mechanism.name, &mechanism.description, &main, STYLE)
 }
 
 /// Returns the part of a page for a mechanism; the page has the [`solver`] and the [`script`], too.
-/// With a token the page may write the file of `biela watch`.
-pub(super) fn main(source: &Source, mechanism: &Mechanism, token: Option<&str>) -> String {
+/// `attributes` are those of [`attribute`].
+pub(super) fn main(source: &Source, mechanism: &Mechanism, attributes: &str) -> String {
     let file = file(source, Some(mechanism));
-    let token = token.map_or_else(String::new, |token| {
-        format!(" data-token=\"{}\"", escape(token))
-    });
     fill(
         MAIN,
         &[
-            ("token", &token),
+            ("attributes", attributes),
             // A text in it may not end the script.
             ("file", &file.to_string().replace('<', "\\u003c")),
         ],
     )
+}
+
+/// Returns an attribute of the part, if it has a value: `token`, with which the page may write the file
+/// of `biela watch`, or `studio`, the address of a studio.
+pub(super) fn attribute(name: &str, value: Option<&str>) -> String {
+    value.map_or_else(String::new, |value| {
+        format!(" data-{name}=\"{}\"", escape(value))
+    })
 }
 
 /// Returns a file as pages open it: its name, its text and, of a file without errors, the tables that it
@@ -160,7 +173,7 @@ pub(super) mod tests {
         let text = include_str!("../../mechanisms/pendulum.toml");
         let source = Source::new("a/b.toml", format!("# </script>\n{text}"));
         let (mechanism, _) = Mechanism::parse(&source).expect("it is the example");
-        let main = main(&source, &mechanism, None);
+        let main = main(&source, &mechanism, "");
         assert!(!main.contains("# </script>") && main.contains("\"name\":\"b.toml\""));
     }
 }

@@ -52,7 +52,7 @@ pub(super) fn page(solver: &str, beginning: &Beginning) -> String {
         "templates": beginning.templates,
         "schema": Mechanism::schema(),
     });
-    let live = fill(LIVE, &[("token", ""), ("file", "null")]);
+    let live = fill(LIVE, &[("attributes", ""), ("file", "null")]);
     let all_licences = format!("{LICENCES}\n{EDITOR_LICENCES}");
     let scripts = SCRIPTS.into_iter().chain([EDITOR]).chain(OWN_SCRIPTS);
     fill(

@@ -108,11 +108,15 @@ impl Session {
                 "high_end": causes[1],
             }))
         };
+        let bodies = mechanism.bodies.iter().map(|body| &*body.name);
+        let length = shown_in(Unit::METRE, self.length);
         let ranges = self.ranges.iter().take(own.len()).map(range);
         let ranges: Vec<Option<Value>> = ranges.collect();
         json!({
             "name": mechanism.name,
             "description": mechanism.description,
+            "bodies": bodies.collect::<Vec<_>>(),
+            "length": { "unit": length.0, "factor": length.1 },
             "warnings": self.warnings,
             "drivers": drivers,
             "parameters": parameters,

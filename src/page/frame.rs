@@ -11,12 +11,15 @@ use crate::mechanism::DriverId;
 const HEAD: usize = 4;
 /// Number of values of the spring from the hand: x and y of its ends.
 const SPRING: usize = 4;
+/// Number of values of the traced point: place and velocity.
+const TRACED: usize = 4;
 
 impl Session {
     /// Returns the places in the list of numbers: `drivers` (value, velocity and acceleration
     /// each), `parameters`, `variables`, `joints` (point and force of each joint, in the picture
     /// and in newtons, y down), `spring` (in the picture, from the body to the hand; not numbers
-    /// without one), then `attachments` (x, y and angle each), `lengths` and `points`
+    /// without one), `traced` (place \[m\] and velocity \[m/s\] of the traced point in ground axes, not
+    /// numbers without one), then `attachments` (x, y and angle each), `lengths` and `points`
     /// (velocity and acceleration each) of the picture.
     #[must_use]
     pub fn layout(&self) -> Value {
@@ -26,7 +29,8 @@ impl Session {
         let variables = parameters + mechanism.parameters.len();
         let joints = variables + self.variables();
         let spring = joints + 4 * self.reactions();
-        let attachments = spring + SPRING;
+        let traced = spring + SPRING;
+        let attachments = traced + TRACED;
         let [frames, lengths] = self.picture.parts();
         json!({
             "time": 0,
@@ -39,6 +43,7 @@ impl Session {
             "joints": joints,
             "joint_count": self.reactions(),
             "spring": spring,
+            "traced": traced,
             "attachments": attachments,
             "lengths": attachments + 3 * frames,
             "points": attachments + 3 * frames + lengths,
@@ -82,6 +87,7 @@ impl Session {
             [held.into(), spring.hand].map(|end| self.picture.place(end))
         });
         out.extend(ends.unwrap_or([[f64::NAN; 2]; 2]).as_flattened());
+        out.extend(self.traced().as_flattened());
         self.picture.add_places(&pose.q, out);
         let rates = &self.solution.rates;
         let rates = [rates.velocity(), rates.acceleration()];

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::chart::Over;
+use super::along::Over;
 use super::files::Files;
 use super::outcome::Outcome;
 use super::session::Session;
@@ -29,6 +29,9 @@ use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 /// | `assemblies` | | `pictures`, `complete` |
 /// | `choose` | `index` | an outcome |
 /// | `chart` | `driver` (time without one), `variables`, `samples` | `x`, `y`, `events` |
+/// | `trace` | `body`, `grip`; no point without them | `done` |
+/// | `path` | `driver` (time without one), `samples` | `points` of the traced point, in the picture |
+/// | `poses` | `driver` (time without one), `samples` | `poses`, lists of the places of the parts |
 /// | `diagram` | | `svg` |
 /// | `text` | `parameters` (without the pose) | `text` |
 ///
@@ -98,6 +101,10 @@ impl Host {
             let body = index("body")?;
             (body < session.mechanism().bodies.len()).then_some(BodyId(body))
         };
+        let over = match index("driver") {
+            Some(driver) => Over::Driver(DriverId(driver)),
+            None => Over::Time,
+        };
         let outcome = match word {
             "drive" => session.drive(DriverId(index("driver")?), number("value")?),
             "time" => session.go_to(number("value")?),
@@ -145,15 +152,17 @@ impl Host {
                     }
                     "assemblies" => session.assemblies(),
                     "chart" => {
-                        let over = match index("driver") {
-                            Some(driver) => Over::Driver(DriverId(driver)),
-                            None => Over::Time,
-                        };
                         let variables = request["variables"].as_array()?.iter();
                         let variables = variables.map(|v| usize::try_from(v.as_u64()?).ok());
                         let variables: Vec<usize> = variables.collect::<Option<_>>()?;
                         session.chart(over, &variables, index("samples")?)
                     }
+                    "trace" => {
+                        session.trace(body(session).zip(pair("grip")));
+                        json!({ "done": true })
+                    }
+                    "path" => json!({ "points": session.path(over, index("samples")?) }),
+                    "poses" => json!({ "poses": session.poses(over, index("samples")?) }),
                     "diagram" => json!({ "svg": session.diagram() }),
                     "text" => {
                         let text = if flag("parameters") {

@@ -20,14 +20,18 @@
 //! | `free` | free motion: time goes on, the hand pulls |
 //! | `hand` | a body that is pulled towards a point |
 //! | `assemblies` | the other positions in which the mechanism closes |
+//! | `along` | poses along time or a driver |
 //! | `chart` | variables over time or over a driver |
+//! | `course` | the path of a point, and poses laid over each other |
 //! | `frame` | the numbers of one picture |
 //! | `edit` | the mechanism's file with other values |
 //! | `files` | the files opened one after the other, for undo |
 //! | `host` | [`Host`]: requests in JSON |
 
+mod along;
 mod assemblies;
 mod chart;
+mod course;
 mod description;
 mod edit;
 mod files;
@@ -46,7 +50,7 @@ mod tests;
 mod undo;
 mod values;
 
-pub use chart::Over;
+pub use along::Over;
 pub use edit::{EditError, Place, edit};
 pub use held::assembled;
 pub use host::Host;

@@ -18,7 +18,8 @@ use crate::kinematics::{
     Curve, ForceQuantity, Output, OutputSource, Path, Pose, Reason, Solution, Solver,
 };
 use crate::mechanism::{
-    DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source, Unit,
+    BodyId, DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source,
+    Unit,
 };
 
 /// Reciprocal condition below which a pose counts as a dead point, where rates grow without bound. A
@@ -41,6 +42,8 @@ pub struct Session {
     pub(super) freedoms: Option<Freedoms>,
     /// The spring on which the reader holds a body.
     pub(super) spring: Option<Spring>,
+    /// The point whose path is shown: of a body, in its frame \[m\].
+    pub(super) traced: Option<(BodyId, [f64; 2])>,
     /// The start of the simulation, from which times are reached; for freedoms the moment at which
     /// they were let go.
     pub(super) start: Moment,
@@ -97,6 +100,7 @@ impl Session {
             energies: freedoms.as_ref().and_then(|_| energies(&outputs)),
             freedoms,
             spring: None,
+            traced: None,
             solution,
             has_rates: false,
             picture: MovingPicture::new(&mut solver, &own, &reached, None),

@@ -1,26 +1,12 @@
 // The ways out of the studio: the FMU, the file, pictures, a link.
 
-import { add, say } from "./controls.js";
+import { add, say, shown } from "./controls.js";
 import { buttonRow, openWindow } from "./dialogs.js";
 import { save } from "./files.js";
+import { base64Of, bytesOf, linkTo } from "./link.js";
 
 // Longest link that common programs keep whole [letters].
 const LONGEST_LINK = 8000;
-
-/** Returns bytes of base64. */
-function bytesOf(base64) {
-  return Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-}
-
-/** Returns base64 of bytes. */
-async function base64Of(bytes) {
-  const url = await new Promise((done) => {
-    const reader = new FileReader();
-    reader.onload = () => done(reader.result);
-    reader.readAsDataURL(new Blob([bytes]));
-  });
-  return url.slice(url.indexOf(",") + 1);
-}
 
 /** Loads what a script beside the page holds as base64 of gzip. */
 async function loadPart(name) {
@@ -110,6 +96,69 @@ export function saveMade(studio, kind, type) {
   studio.say([answer?.problems, ...(answer?.notes ?? [])].filter(Boolean).join("; "));
 }
 
+// What browsers record, the most widely read first.
+const VIDEOS = [
+  ["video/mp4", "mp4"],
+  ["video/webm", "webm"],
+];
+
+/** The kind of video that this browser records, with its ending; undefined if it records none. */
+export function videoKind() {
+  const records = globalThis.MediaRecorder && globalThis.ImageDecoder;
+  return records && VIDEOS.find(([kind]) => MediaRecorder.isTypeSupported(kind));
+}
+
+/** Saves the motion as a video, which takes as long as it lasts. */
+export async function saveVideo(studio) {
+  const { name, files } = studio.file;
+  const answer = studio.ask({ do: "gif", name, text: studio.fileText, files });
+  if (!answer?.content) {
+    studio.say(answer?.problems ?? "");
+    return;
+  }
+  const [kind, ending] = videoKind();
+  try {
+    const video = await record(bytesOf(answer.content), kind, (seconds) =>
+      studio.say(`Recording the motion, ${shown(seconds, 2)} s …`),
+    );
+    save(`${studio.name}.${ending}`, kind, video);
+    studio.say(`Saved \`${studio.name}.${ending}\``);
+  } catch (error) {
+    studio.say(`This browser has not recorded the video: ${error.message}`);
+  }
+}
+
+/** Returns a moving GIF as a video of a kind; `begun` is told how long it takes [s]. */
+async function record(gif, kind, begun) {
+  const film = new ImageDecoder({ data: gif, type: "image/gif" });
+  await film.tracks.ready;
+  await film.completed;
+  const count = film.tracks.selectedTrack.frameCount;
+  const { image: first } = await film.decode({ frameIndex: 0 });
+  const canvas = document.createElement("canvas");
+  // Encoders want even sides.
+  [canvas.width, canvas.height] = [first.displayWidth, first.displayHeight].map((side) => side + (side % 2));
+  const brush = canvas.getContext("2d");
+  brush.fillStyle = "#fff";
+  brush.fillRect(0, 0, canvas.width, canvas.height);
+  const recorder = new MediaRecorder(canvas.captureStream(), { mimeType: kind, videoBitsPerSecond: 5e6 });
+  const parts = [];
+  recorder.ondataavailable = ({ data }) => parts.push(data);
+  recorder.start();
+  begun((count * first.duration) / 1e6);
+  for (let frameIndex = 0; frameIndex < count; frameIndex += 1) {
+    const { image } = await film.decode({ frameIndex });
+    brush.drawImage(image, 0, 0);
+    await new Promise((done) => setTimeout(done, image.duration / 1e3));
+    image.close();
+  }
+  await new Promise((done) => {
+    recorder.onstop = done;
+    recorder.stop();
+  });
+  return new Blob(parts);
+}
+
 /** Saves the drawing as SVG, or as PNG of twice its size. */
 export async function saveDrawing(studio, kind) {
   const picture = studio.sheet.svg.cloneNode(true);
@@ -154,35 +203,10 @@ export async function importFile(studio, file) {
   return { name: answer.name, text: answer.text, files: [], notes: answer.notes };
 }
 
-// -- links ------------------------------------------------------------------------------------
-
-async function through(stream, bytes) {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
-}
-
-/** Returns a link that holds the mechanism. */
-export async function linkOf(studio) {
-  const content = JSON.stringify([studio.file.name, studio.fileText, studio.file.files]);
-  const packed = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode(content));
-  const word = (await base64Of(packed)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
-  return `${location.href.split("#")[0]}#m=${word}`;
-}
-
-/** Returns the file that the page's address holds, or null. */
-export async function fileOfLink() {
-  const word = location.hash.match(/^#m=([A-Za-z0-9_-]+)$/)?.[1];
-  if (!word) {
-    return null;
-  }
-  const packed = bytesOf(word.replaceAll("-", "+").replaceAll("_", "/"));
-  const bytes = await through(new DecompressionStream("deflate-raw"), packed);
-  const [name, text, files] = JSON.parse(new TextDecoder().decode(bytes));
-  return { name: String(name), text: String(text), files };
-}
-
 /** Copies the link, or shows it. */
 export async function shareLink(studio) {
-  const link = await linkOf(studio);
+  const file = { ...studio.file, text: studio.fileText };
+  const link = await linkTo(location.href.split("#")[0], file);
   try {
     await navigator.clipboard.writeText(link);
     const long = link.length > LONGEST_LINK ? `; with ${link.length} letters it is too long for some programs` : "";

@@ -1,7 +1,11 @@
 """Mechanisms moved by hand on pages, in a real browser."""
 
+import base64
+import json
 import math
+import re
 import subprocess
+import zlib
 
 import pytest
 from harness import ROOT, SHIPPED, program
@@ -379,6 +383,91 @@ def test_a_chart_is_read_at_the_pointer(page_of, tmp_path):
     assert panels == 2
     # Those chosen, and those whose names hold the text.
     assert "rocker.omega" in listed and "rocker.phi" in listed and "coupler.x" not in listed
+
+
+def test_a_click_shows_path_and_speed_of_a_point(page_of, tmp_path):
+    """The crank's end goes round on a circle; the path is drawn to a hundredth of a unit."""
+    found = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const angle = () => live.frame[live.places.drivers];
+        const before = angle();
+        const at = [0.1 * Math.cos(before), 0.1 * Math.sin(before)];
+        await drag(at);
+        const scale = live.picture.parts.scale;
+        const path = find(".before path");
+        const radii = [...path.getAttribute("d").matchAll(/[ML](\\S+) ([^LM]+)/g)].map(([, x, y]) => Math.hypot(x, y) / scale);
+        const told = find(".traced span").textContent;
+        const shown = !find(".traced").hidden;
+        live.ask({ do: "undo" });
+        const after = angle();
+        await drag([0.2, -0.06]);
+        return { moved: after - before, low: Math.min(...radii), high: Math.max(...radii), count: radii.length, told, shown,
+          gone: find(".traced").hidden && !find(".before path"), scale };
+        """,
+    )
+    assert found["moved"] == 0
+    assert found["count"] > 200
+    # The pointer is on a pixel, half a pixel away at most, and a pixel is less than 2 units.
+    off = 2 / found["scale"]
+    assert 0.1 - off < found["low"] <= found["high"] < 0.1 + off
+    assert found["shown"] and found["gone"]
+    speed = re.search(r"speed ([0-9.]+) m/s", found["told"])
+    assert speed and found["told"].startswith("Point of crank at "), found["told"]
+    # A turn in 4 s.
+    assert abs(float(speed[1]) - math.tau / 4 * 0.1) < math.tau / 4 * off + 1e-4
+
+
+def test_other_poses_lie_over_each_other(page_of, tmp_path):
+    found = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        find(".poses").click();
+        const poses = all(".behind > g");
+        const places = poses.map((pose) => pose.firstChild.getAttribute("transform"));
+        const parts = [poses[0].childElementCount, live.picture.moving.groups.length];
+        const near = live.picture.bodyAt(...point(-0.05, 0));
+        find(".poses").click();
+        return { places, parts, near, left: all(".behind > g").length };
+        """,
+    )
+    # A turn in steps of 30°: the last pose is the first one.
+    assert len(found["places"]) == 13 and len(set(found["places"])) >= 12
+    assert 0 < found["parts"][0] <= found["parts"][1]
+    assert found["near"] is None and found["left"] == 0
+
+
+def test_edit_leads_to_the_studio(solver, tmp_path):
+    """The link holds the mechanism as it is on the page."""
+    page = tmp_path / "page.html"
+    file = ROOT / "mechanisms" / "four_bar.toml"
+    command = [program(), "page", file, "--solver", solver, "--studio", "studio/index.html", "-o", page]
+    subprocess.run(command, check=True, capture_output=True)
+    found = look(
+        tmp_path,
+        page,
+        """
+        live.move({ do: "drive", driver: 0, value: 2 });
+        let link = null;
+        document.addEventListener("click", (event) => {
+          if (event.target.matches("a[href]")) {
+            event.preventDefault();
+            link = event.target.getAttribute("href");
+          }
+        }, true);
+        find(".edit").click();
+        await until(() => link);
+        return { link, seen: find(".edit").checkVisibility() };
+        """,
+    )
+    address, packed = found["link"].split("#m=")
+    assert address == "studio/index.html" and found["seen"]
+    packed = base64.urlsafe_b64decode(packed + "=" * (-len(packed) % 4))
+    name, text, files = json.loads(zlib.decompress(packed, -zlib.MAX_WBITS))
+    assert name == "four_bar.toml" and files == []
+    assert re.search(r'start = "114\.591\d*\*deg"', text), text
 
 
 def test_playing_and_keys(page_of, tmp_path):

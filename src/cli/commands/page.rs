@@ -38,6 +38,10 @@ pub(in crate::cli) struct Page {
     /// Name of a script, beside the page, that takes the solver: several pages can share it.
     #[arg(long, value_name = "SCRIPT")]
     share: Option<String>,
+    /// Address of a studio, such as the index.html that `biela studio --write` writes: *Edit in the
+    /// studio* leads there.
+    #[arg(long, value_name = "ADDRESS")]
+    studio: Option<String>,
 }
 
 impl Page {
@@ -60,7 +64,12 @@ impl Page {
             None => live::solver(&wasm),
             Some(script) => live::solver_in(script),
         };
-        let page = live::page(&input.source, &input.mechanism, &solver);
+        let page = live::page(
+            &input.source,
+            &input.mechanism,
+            &solver,
+            self.studio.as_deref(),
+        );
         write(&path, page.as_bytes())?;
         if let Some(script) = script {
             write(&script, live::shared_solver(&wasm).as_bytes())?;

@@ -162,7 +162,11 @@ impl View {
         }
         warnings.extend(misfits(&solver).iter().map(ToString::to_string));
         let player = if self.solver.is_some() {
-            live::main(&input.source, &input.mechanism, Some(&self.token))
+            live::main(
+                &input.source,
+                &input.mechanism,
+                &live::attribute("token", Some(&self.token)),
+            )
         } else {
             let shown = show(&mut solver).map_err(told)?;
             let moving = escape(&shown.moving);

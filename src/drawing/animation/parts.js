@@ -42,16 +42,10 @@ class Parts {
     this.places = [];
     for (const [element, attachment] of this.groups) {
       const { x, y, degrees } = this.place(attachment);
-      element.setAttribute("transform", `translate(${fix(x)} ${fix(y)}) rotate(${fix(degrees)})`);
+      placePart(element, x, y, degrees);
     }
     for (const { path, length, points } of this.elastic) {
-      const now = long(length);
-      let line = "";
-      for (let at = 0; at < points.length; at += 4) {
-        const [x, y, alongX, alongY] = points.slice(at, at + 4);
-        line += `${at ? "L" : "M"}${fix(x + now * alongX)} ${fix(y + now * alongY)}`;
-      }
-      path.setAttribute("d", line);
+      stretchPath(path, points, long(length));
     }
     // A name that would be over an earlier one is hidden until there is room.
     const seen = [];
@@ -104,6 +98,19 @@ class Parts {
 
 function addTo(parent, name) {
   return parent.appendChild(document.createElementNS(SVG, name));
+}
+
+function placePart(element, x, y, degrees) {
+  element.setAttribute("transform", `translate(${fix(x)} ${fix(y)}) rotate(${fix(degrees)})`);
+}
+
+function stretchPath(path, points, long) {
+  let line = "";
+  for (let at = 0; at < points.length; at += 4) {
+    const [x, y, alongX, alongY] = points.slice(at, at + 4);
+    line += `${at ? "L" : "M"}${fix(x + long * alongX)} ${fix(y + long * alongY)}`;
+  }
+  path.setAttribute("d", line);
 }
 
 function fix(number) {

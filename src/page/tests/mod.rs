@@ -3,7 +3,7 @@
 mod files;
 mod free;
 
-use std::f64::consts::{FRAC_PI_3, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
 use serde_json::{Value, json};
 
@@ -329,6 +329,13 @@ fn requests_are_answered_and_nonsense_is_refused() {
             json!({ "do": "chart", "variables": [0, 999], "samples": 3 }),
             "x",
         ),
+        (json!({ "do": "trace", "body": 99, "grip": [0, 0] }), "done"),
+        (json!({ "do": "path", "driver": 0, "samples": 5 }), "points"),
+        (json!({ "do": "path", "driver": 0 }), "error"),
+        (
+            json!({ "do": "poses", "driver": 99, "samples": 5 }),
+            "poses",
+        ),
         (json!({ "do": "fly" }), "error"),
         (json!([]), "error"),
     ] {
@@ -361,6 +368,65 @@ fn a_chart_over_the_crank_is_periodic_and_leaves_the_pose() {
     let at = |k: usize| y[k].as_f64().expect("a number");
     assert!((at(0) - at(60)).abs() < 1e-12);
     assert_eq!(session.pose(), &before);
+}
+
+// The crank's end goes round on a circle of 100 mm, at 0.1 m · ω: to rounding.
+#[test]
+fn a_traced_point_has_its_path_and_its_speed() {
+    let mut session = open(FOUR_BAR);
+    let before = session.pose().clone();
+    let over = super::Over::Driver(DriverId(0));
+    assert_eq!(session.path(over, 61), json!([]));
+    session.trace(Some((BodyId(0), [0.1, 0.0])));
+    let path = session.path(over, 61);
+    let points = path.as_array().expect("a list");
+    assert_eq!(points.len(), 61);
+    let scale = session.picture.scale();
+    let center = session.picture.place([0.0; 2]);
+    for point in points {
+        let [x, y] = [0, 1].map(|k| point[k].as_f64().expect("a number") - center[k]);
+        assert!((f64::hypot(x, y) - 0.1 * scale).abs() < 1e-12 * scale);
+    }
+    session.set_speed(DriverId(0), 3.0, 0.0);
+    let at = session.layout()["traced"].as_u64().expect("a place") as usize;
+    let mut frame = Vec::new();
+    session.write_frame(&mut frame);
+    let (sin, cos) = FRAC_PI_3.sin_cos();
+    for (value, expected) in frame[at..]
+        .iter()
+        .zip([0.1 * cos, 0.1 * sin, -0.3 * sin, 0.3 * cos])
+    {
+        assert!((value - expected).abs() < 1e-14);
+    }
+    assert_eq!(session.pose(), &before);
+    session.trace(None);
+    session.write_frame(&mut frame);
+    assert!(frame[at..at + 4].iter().all(|value| value.is_nan()));
+}
+
+#[test]
+fn poses_over_each_other_are_those_of_the_driver() {
+    let mut session = open(FOUR_BAR);
+    let before = session.pose().clone();
+    let layout = session.layout();
+    let mut frame = Vec::new();
+    let poses = session.poses(super::Over::Driver(DriverId(0)), 5);
+    let poses: Vec<Vec<f64>> = serde_json::from_value(poses).expect("lists of numbers");
+    assert_eq!(session.pose(), &before);
+    assert_eq!(poses.len(), 5);
+    let places = |key: &str| layout[key].as_u64().map_or(0, |at| at as usize);
+    for (quarter, pose) in poses.iter().enumerate() {
+        let angle = FRAC_PI_2 * quarter as f64;
+        assert_eq!(session.drive(DriverId(0), angle), Outcome::Reached);
+        session.write_frame(&mut frame);
+        let shown = &frame[places("attachments")..places("points")];
+        assert_eq!(shown.len(), pose.len());
+        let scale = session.picture.scale();
+        for (a, b) in shown.iter().zip(pose) {
+            // A turn of the crank by way of other poses.
+            assert!((a - b).rem_euclid(360.0).min((b - a).rem_euclid(360.0)) < 1e-9 * scale);
+        }
+    }
 }
 
 // The powers of driver and load add up to zero: effort + Fx dx/dφ + Fy dy/dφ + torque = 0, at
