@@ -49,6 +49,7 @@ export class Design {
     if (this.drag?.shown) {
       this.studio.showAgain();
     }
+    this.forget();
     this.drag = null;
     this.mark();
   }
@@ -71,6 +72,7 @@ export class Design {
     place.addEventListener("pointerleave", () => {
       if (!this.drag) {
         this.over = null;
+        this.forget();
         this.mark();
       }
     });
@@ -166,7 +168,42 @@ export class Design {
     if (this.drag) {
       this.dragTo(this.over);
     } else {
+      this.over.ground = this.isGround(event);
+      this.foresee();
       this.mark();
+    }
+  }
+
+  /** Whether a click is on ground. */
+  isGround(event) {
+    return event.ctrlKey || event.metaKey || this.holds === "g";
+  }
+
+  /** Shows what the last click of a tool would draw where the pointer is. */
+  foresee() {
+    if (this.foreseeing) {
+      return;
+    }
+    this.foreseeing = true;
+    requestAnimationFrame(() => {
+      this.foreseeing = false;
+      const { tool: name, found, over } = this;
+      const tool = TOOLS[name];
+      const isLast = found.length > 0 && found.length === tool.most - 1;
+      if (over && isLast && tool.gesture && !unfit(tool, found.length, over)) {
+        this.foreseen = !this.studio.preview(tool.gesture([...found, over])).refused;
+      } else {
+        this.forget();
+      }
+      this.mark();
+    });
+  }
+
+  /** Shows the document again as it is. */
+  forget() {
+    if (this.foreseen) {
+      this.foreseen = false;
+      this.studio.showAgain();
     }
   }
 
@@ -228,7 +265,7 @@ export class Design {
       this.studio.say(why);
       return;
     }
-    found.ground = event.ctrlKey || event.metaKey || this.holds === "g";
+    found.ground = this.isGround(event);
     if (tool.only?.[this.found.length] === "joint") {
       found.joint = await this.chooseJoint(found.point.joints, event);
       if (!found.joint) {
@@ -428,6 +465,7 @@ export class Design {
     const { sheet } = this;
     sheet.clear();
     this.placeTyped();
+    this.studio.root.classList.toggle("begun", this.found.length > 0);
     if (!this.studio.isDesign) {
       return;
     }

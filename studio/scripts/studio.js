@@ -4,8 +4,9 @@ import { Background } from "./background.js";
 import { add, say } from "./controls.js";
 import { Design } from "./design.js";
 import { Menu, askName, buttonRow, openWindow } from "./dialogs.js";
-import { exportFmu, fileOfLink, importFile, saveDrawing, saveFile, saveMade, shareLink } from "./export.js";
+import { exportFmu, importFile, saveDrawing, saveFile, saveMade, saveVideo, shareLink, videoKind } from "./export.js";
 import { Inspector } from "./inspector.js";
+import { fileOfLink } from "./link.js";
 import { Live } from "./live.js";
 import { Sheet } from "./sheet.js";
 import { Broken, Solver, unpack } from "./solver.js";
@@ -611,6 +612,7 @@ class Studio {
         { label: "Picture (PNG)", act: () => saveDrawing(this, "png"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Drawing for the workshop (DXF)", act: () => saveMade(this, "dxf", "image/vnd.dxf"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Moving picture (GIF)", act: () => saveMade(this, "gif", "image/gif"), why: this.sheet.svg ? "" : "Nothing is drawn" },
+        { label: "Video (MP4 or WebM)", act: () => saveVideo(this), why: this.sheet.svg ? (videoKind() ? "" : "This browser records none") : "Nothing is drawn" },
         { label: "Copy a web link", act: () => shareLink(this) },
       ],
       [box.left, box.bottom + 2],
@@ -629,17 +631,35 @@ class Studio {
       const list = add(form, "div", { className: "templates" });
       for (const template of this.templates) {
         const button = add(list, "button", { type: "button" });
+        add(button, "div", { className: "picture" });
         add(button, "strong", { textContent: template.name });
         add(button, "span", { textContent: template.description });
         button.addEventListener("click", () => dialog.close(template.name));
       }
       buttonRow(form, ["Cancel", ""]);
+      this.pictureTemplates(list);
     });
     const template = this.templates.find((each) => each.name === name);
     if (template && (await this.mayLeave())) {
       this.background.remove();
       this.open({ name: `${template.name}.toml`, text: template.text, files: template.files });
     }
+  }
+
+  /** Draws the templates as they come into view. */
+  pictureTemplates(list) {
+    const buttons = [...list.children];
+    const watcher = new IntersectionObserver((entries) => {
+      for (const { target } of entries.filter((entry) => entry.isIntersecting)) {
+        watcher.unobserve(target);
+        setTimeout(() => {
+          const template = this.templates[buttons.indexOf(target)];
+          template.picture ??= this.ask({ do: "svg", ...template }).svg ?? "";
+          target.querySelector(".picture").innerHTML = template.picture.replace(/^<\?xml[^>]*>/, "");
+        });
+      }
+    });
+    buttons.forEach((button) => watcher.observe(button));
   }
 
   async openFiles(files) {

@@ -9,11 +9,12 @@ use std::sync::Arc;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use biela::cli::{archive_with, gif};
-use biela::drawing::Scene;
+use biela::drawing::{Scene, Sheet, svg};
 use biela::exchange::{Format, LengthUnit, WorkshopDrawing};
 use biela::fmi::{Platform, RuntimeLibrary};
 use biela::kinematics::{Path, Solver};
 use biela::mechanism::{Mechanism, Severity, Source};
+use biela::page::assembled;
 use serde_json::{Value, json};
 
 /// A studio that also exports and imports. Contents of files are in base64; a request that fails is
@@ -23,6 +24,7 @@ use serde_json::{Value, json};
 /// |---|---|---|
 /// | `export` | `name`, `text`, `files`, `fmi` (`2` or `3`), `libraries` (platforms with libraries), maybe `page` (the solver for pages) | `content` of the FMU |
 /// | `dxf` | `name`, `text`, `files` | `content` of the drawing of the pose at the start, `notes` |
+/// | `svg` | `name`, `text`, `files` | `svg`: the drawing of the pose at the start |
 /// | `gif` | `name`, `text`, `files` | `content` of the moving picture |
 /// | `import` | `name` of a file or a link, its `content`, maybe `length` (its unit) | `text` of the mechanism file, `name`, `notes` |
 #[derive(Default)]
@@ -32,7 +34,7 @@ struct Host {
 
 impl Host {
     fn answer(&mut self, request: &str) -> Value {
-        const OWN: [&str; 4] = ["export", "dxf", "gif", "import"];
+        const OWN: [&str; 5] = ["export", "dxf", "svg", "gif", "import"];
         // The word comes first, so that no other request is read twice.
         let word = request
             .strip_prefix("{\"do\":\"")
@@ -49,6 +51,7 @@ impl Host {
             _ => mechanism(&request).and_then(|(source, mechanism)| match word {
                 "export" => export(&request, &source, &mechanism),
                 "dxf" => dxf(mechanism),
+                "svg" => still(&mechanism),
                 _ => Ok(json!({ "content": STANDARD.encode(gif(&source, &mechanism)?) })),
             }),
         };
@@ -122,6 +125,13 @@ fn dxf(mechanism: Arc<Mechanism>) -> Result<Value, String> {
     let drawing = WorkshopDrawing::new(&scene, &solver);
     let notes: Vec<String> = drawing.notes.iter().map(ToString::to_string).collect();
     Ok(json!({ "content": STANDARD.encode(drawing.text), "notes": notes }))
+}
+
+fn still(mechanism: &Arc<Mechanism>) -> Result<Value, String> {
+    let mut solver = assembled(mechanism).map_err(|error| error.to_string())?;
+    let scene = Scene::new(&mut solver, true);
+    let sheet = Sheet::new(&scene, &solver.pose().q);
+    Ok(json!({ "svg": svg::write(&sheet, sheet.width(), false) }))
 }
 
 fn import(request: &Value) -> Result<Value, String> {

@@ -110,6 +110,15 @@ class Drawing:
         waiting.value.save_as(path)
         return path
 
+    def list_templates(self):
+        self.page.locator(".file-menu").click()
+        self.page.get_by_text("Templates …").click()
+
+    def open_template(self, name):
+        self.list_templates()
+        self.page.locator(".templates button").filter(has_text=name).first.click()
+        self.page.wait_for_selector(".studio[data-state=driven]")
+
     def look(self, name):
         """Keeps a picture of the page."""
         self.page.screenshot(path=self.folder / f"{name}.png")

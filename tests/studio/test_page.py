@@ -1,5 +1,6 @@
 """The studio's page: text and drawing as one, files and links, other sizes, touch."""
 
+import base64
 import json
 import subprocess
 import zipfile
@@ -93,10 +94,7 @@ def test_what_was_drawn_last_is_there_again(sheet):
 
 
 def test_a_template_is_opened_and_moves(sheet):
-    sheet.page.locator(".file-menu").click()
-    sheet.page.get_by_text("Templates …").click()
-    sheet.page.locator(".templates button").filter(has_text="slider_crank").first.click()
-    sheet.page.wait_for_selector(".studio[data-state=driven]")
+    sheet.open_template("slider_crank")
     sheet.page.locator(".modes button[value=motion]").click()
     live = sheet.page.locator(".live.ready")
     live.locator(".driver-rows input[type=number]").fill("90")
@@ -157,6 +155,119 @@ def test_what_is_saved_begins_as_it_should(sheet, tmp_path, entry, start):
     content = (tmp_path / "saved").read_bytes()
     assert content.startswith(start)
     assert len(content) > 300
+
+
+def test_a_video_lasts_as_long_as_the_motion(sheet, tmp_path):
+    crank(sheet)
+    sheet.tool("slider")
+    sheet.click((0.3, 0.1), (0.4, 0.1))
+    sheet.tool("driver")
+    sheet.click((0, 0))
+    sheet.page.locator(".file-menu").click()
+    with sheet.page.expect_download() as waiting:
+        sheet.page.get_by_role("menuitem", name="Video").click()
+    video = tmp_path / waiting.value.suggested_filename
+    waiting.value.save_as(video)
+    content = video.read_bytes()
+    assert content[4:8] == b"ftyp" if video.suffix == ".mp4" else content.startswith(b"\x1a\x45\xdf\xa3")
+    shown = sheet.page.evaluate(
+        """async (data) => {
+          const video = document.createElement("video");
+          video.src = data;
+          await new Promise((done) => (video.onloadeddata = done));
+          // A recording does not tell its length before its end has been sought.
+          video.currentTime = 1e6;
+          await new Promise((done) => (video.onseeked = done));
+          return [video.currentTime, video.videoWidth, video.videoHeight];
+        }""",
+        f"data:video/{video.suffix[1:]};base64,{base64.b64encode(content).decode()}",
+    )
+    # A turn takes 4 s; a busy machine records it slower.
+    assert 3.5 < shown[0] < 20
+    assert min(shown[1:]) > 200
+
+
+def test_templates_have_pictures(sheet):
+    sheet.list_templates()
+    sheet.page.wait_for_function("() => document.querySelectorAll('.templates .picture svg path').length > 20")
+    pictures = sheet.page.locator(".templates .picture svg").count()
+    # Those that have been in view.
+    assert 4 <= pictures < sheet.page.locator(".templates button").count()
+
+
+def test_the_last_click_is_foreseen_and_changes_nothing(sheet):
+    sheet.tool("gears")
+    before = sheet.text
+    sheet.click((0.1, 0.1), (0.25, 0.1))
+    u, v = sheet.place((0.2, 0.1))
+    sheet.page.mouse.move(u - 3, v)
+    sheet.page.mouse.move(u, v)
+    sheet.frame()
+    assert "1 degree of freedom" in sheet.status
+    assert sheet.page.locator(".drawing svg [data-attachment]").count() >= 2
+    assert sheet.text == before
+    sheet.press("Escape")
+    sheet.frame()
+    assert "empty sheet" in sheet.status
+    assert sheet.text == before
+
+
+def test_a_click_in_motion_shows_a_path(sheet):
+    sheet.open_template("four_bar")
+    before = sheet.text
+    sheet.page.locator(".modes button[value=motion]").click()
+    sheet.page.locator(".live input.poses").check()
+    at = sheet.page.evaluate(
+        """() => {
+          const { picture } = document.querySelector(".studio").studio.live;
+          const { scale } = picture.parts;
+          const at = new DOMPoint(0.2 * scale, -0.2 * scale).matrixTransform(picture.svg.getScreenCTM());
+          return [at.x, at.y];
+        }"""
+    )
+    sheet.page.mouse.click(*at)
+    sheet.page.wait_for_selector(".live .before path[d^=M]", state="attached")
+    assert sheet.page.locator(".live .traced span").inner_text().startswith("Point of coupler at ")
+    assert sheet.page.locator(".live .behind > g").count() == 13
+    sheet.page.locator(".live .traced button").click()
+    assert sheet.page.locator(".live .before path").count() == 0
+    assert sheet.text == before
+
+
+def test_memory_is_steady_over_an_hour(sheet):
+    """An hour of free motion, sixty pictures a second, and as many drags as one has in it."""
+    text = (ROOT / "mechanisms" / "pendulum_free.toml").read_text(encoding="utf-8")
+    first, last, time = sheet.page.evaluate(
+        """async (text) => {
+          const { studio } = document.querySelector(".studio");
+          studio.open({ name: "pendulum_free.toml", text });
+          const size = () => studio.solver.exports.memory.buffer.byteLength + (studio.live?.solver.exports.memory.buffer.byteLength ?? 0);
+          const marker = studio.view.sketch.points.flatMap((point) => point.markers).find((marker) => !marker.startsWith("ground."));
+          const drag = (count) => {
+            for (let k = 0; k < count; k += 1) {
+              studio.preview({ kind: "shift", markers: [marker], by: [1e-4 * (k % 50), 0] });
+            }
+            studio.showAgain();
+          };
+          const fly = (from, to) => {
+            for (let k = 60 * from; k < 60 * to; k += 1) {
+              studio.live.solver.ask({ do: "time", value: (k + 1) / 60 });
+            }
+          };
+          drag(200);
+          studio.setMode("motion");
+          fly(0, 20);
+          const first = size();
+          fly(20, 3600);
+          const time = studio.live.solver.frame[0];
+          studio.setMode("design");
+          drag(3000);
+          return [first, size(), time];
+        }""",
+        text,
+    )
+    assert abs(time - 3600) < 1e-6
+    assert last == first
 
 
 def test_a_length_clicked_becomes_a_parameter(sheet):
