@@ -1,8 +1,8 @@
-// What a motion leaves behind: the path of a point that was clicked, with its speed, and poses laid over
-// each other.
+// The path of a point that was clicked, with its speed, and poses laid over each other.
 
-import { add, say, shown } from "./controls.js";
+import { say, shown } from "./controls.js";
 
+// Points of a path.
 const ON_PATH = 241;
 // Poses over each other; those of a full turn are 30° apart.
 const POSES = 13;

@@ -190,8 +190,9 @@ export class Design {
       const { tool: name, found, over } = this;
       const tool = TOOLS[name];
       const isLast = found.length > 0 && found.length === tool.most - 1;
-      if (over && isLast && tool.gesture && !unfit(tool, found.length, over)) {
-        this.foreseen = !this.studio.preview(tool.gesture([...found, over])).refused;
+      const fits = over && isLast && tool.gesture && !unfit(tool, found.length, over);
+      if (fits && !this.studio.preview(tool.gesture([...found, over])).refused) {
+        this.foreseen = true;
       } else {
         this.forget();
       }

@@ -58,7 +58,7 @@ export class Inspector {
 
   row(place, { label, path, element, value, shown, unit, type, choices, help }) {
     const row = add(place, "label", { className: "field", title: help ?? "" });
-    say(add(row, "span"), label);
+    say(add(row, "span"), unit && type !== "read" ? `${label} [${unit}]` : label);
     if (type === "read") {
       add(row, "output", { textContent: [shown ?? value, shown ? "" : unit].filter(Boolean).join(" ") });
       return;
@@ -78,7 +78,6 @@ export class Inspector {
       return;
     }
     const field = add(row, "input", { type: "text", value: plain(value ?? ""), autocomplete: "off", spellcheck: false });
-    field.placeholder = unit ?? "";
     add(row, "small", { textContent: shown && shown !== value ? shown : "" });
     const take = () => {
       const text = field.value.trim();
