@@ -132,7 +132,8 @@ export class Chart {
 
 function panel(place, axis, x, { name, unit, y, constant, events }) {
   const known = y.filter((value) => value !== null);
-  let [low, high] = known.length ? [Math.min(...known), Math.max(...known)] : [0, 0];
+  const extremes = known.length ? [Math.min(...known), Math.max(...known)] : null;
+  let [low, high] = extremes ?? [0, 0];
   // A constant is a line in the middle.
   const least = constant * Math.max(1e-3, Math.abs(low), Math.abs(high));
   if (!(high - low > least)) {
@@ -167,7 +168,11 @@ function panel(place, axis, x, { name, unit, y, constant, events }) {
     const anchor = at > WIDTH - 2 * RIGHT ? "end" : "middle";
     draw("text", { x: Math.min(at, WIDTH - 2), y: HEIGHT - 6, "text-anchor": anchor }, String(value));
   }
-  draw("text", { x: LEFT, y: 12, class: "title" }, text);
+  const title = draw("text", { x: LEFT, y: 12, class: "title" }, text);
+  if (extremes) {
+    const [least, most] = extremes.map((value) => shown(value, 4));
+    draw("text", { x: LEFT + title.getComputedTextLength() + 8, y: 12, class: "extremes" }, `${least} to ${most}`);
+  }
   const reading = draw("text", { x: WIDTH - RIGHT, y: 12, "text-anchor": "end", class: "reading" });
   for (const event of events) {
     const line = draw("line", { class: "event", x1: onX(event.x), x2: onX(event.x), y1: TOP, y2: HEIGHT - BOTTOM });

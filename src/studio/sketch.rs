@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::drawn::Drawn;
-use crate::mechanism::{Joint, JointKind, MarkerId, Mechanism};
+use crate::mechanism::{Joint, JointKind, Load, MarkerId, Mechanism};
 
 /// Describes what is drawn. Points are global \[m\], angles in radians.
 ///
@@ -48,8 +48,24 @@ pub(super) fn sketch(drawn: &Drawn) -> Value {
                 "markers": paths(mechanism, [coordinate.from, coordinate.to]),
             })
         }).collect::<Vec<_>>(),
-        "forces": mechanism.forces.iter().map(|force| json!({ "name": force.name }))
-            .collect::<Vec<_>>(),
+        "forces": mechanism.forces.iter().map(|force| {
+            let coordinate = match &force.load {
+                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
+                    Some(coordinate)
+                }
+                _ => None,
+            };
+            let [at, to] = match coordinate {
+                Some(coordinate) => [coordinate.from, coordinate.to].map(|id| Some(drawn.place(id))),
+                None => [None; 2],
+            };
+            json!({
+                "name": force.name,
+                "coordinate": coordinate.map(|coordinate| coordinate.kind.word()),
+                "at": at.map(|[x, y, _]| [x, y]),
+                "to": to.map(|[x, y, _]| [x, y]),
+            })
+        }).collect::<Vec<_>>(),
         "stops": mechanism.stops.iter().map(|stop| json!({ "name": stop.name }))
             .collect::<Vec<_>>(),
         "parameters": mechanism.parameters.iter().zip(&drawn.parameters).map(|(parameter, value)| {

@@ -2,7 +2,7 @@
 
 import { add, shown } from "./controls.js";
 import { askLength, askParameter } from "./dialogs.js";
-import { findAt } from "./snap.js";
+import { findAt, pointAt, rodsOf } from "./snap.js";
 import { TOOLS, ownMarker, unfit } from "./tools.js";
 import { DEGREE, angleOf, lengthOf } from "./units.js";
 
@@ -101,11 +101,12 @@ export class Design {
       // Over a picture its lines lead the hand, not the grid.
       free: event.shiftKey || event.altKey || Boolean(this.studio.background.image),
       without: this.drag?.without ?? [],
+      things: this.tool === "select" && !this.drag,
     });
     if (this.tool === "scale") {
       return { at: this.sheet.toPoint(this.sheet.placeOf(event)), guides: [] };
     }
-    const inside = ["select", "mass"].includes(this.tool) && !this.drag && !found.point && !found.body;
+    const inside = ["select", "mass"].includes(this.tool) && !this.drag && !found.point && !found.body && !found.thing;
     return inside ? { ...found, ...this.insideOf(event) } : found;
   }
 
@@ -387,6 +388,12 @@ export class Design {
     }
     const gesture = this.gestureTo(drag.to);
     this.drag = null;
+    await this.change(gesture);
+    this.mark();
+  }
+
+  /** Does a gesture that changes a length; asks whether a parameter changes with it. */
+  async change(gesture) {
     let answer = this.studio.gesture(gesture, false);
     while (answer.refused?.parameter) {
       const { parameter, formula, value } = answer.refused;
@@ -404,7 +411,6 @@ export class Design {
         this.studio.say(answer.refused.message);
       }
     }
-    this.mark();
   }
 
   // -- typed lengths -------------------------------------------------------------------------
@@ -457,7 +463,8 @@ export class Design {
       return;
     }
     this.sheet.place.focus({ preventScroll: true });
-    this.click({ at: [from[0] + length * Math.cos(angle), from[1] + length * Math.sin(angle)], guides: [] });
+    const at = [from[0] + length * Math.cos(angle), from[1] + length * Math.sin(angle)];
+    this.click({ at, point: pointAt(this.sheet, this.sketch.points, at), guides: [] });
   }
 
   // -- marks ---------------------------------------------------------------------------------
@@ -527,6 +534,12 @@ export class Design {
         sheet.ring(point.at, "selected", 13);
       }
     }
+    if (selection?.kind === "thing") {
+      const rod = rodsOf(sketch).find(({ name }) => name === selection.name);
+      if (rod) {
+        sheet.line(rod.from, rod.to, "selected bar");
+      }
+    }
     if (selection?.kind === "body") {
       const body = sketch.bodies.find((each) => each.name === selection.name);
       body?.bars.forEach(([from, to]) => sheet.line(from, to, "selected bar"));
@@ -546,7 +559,7 @@ export class Design {
       event.preventDefault();
       const answer = await askLength(this.studio.root, { markers, long, unit: this.studio.unit });
       if (answer) {
-        this.studio.gesture({ kind: "length", markers, ...answer });
+        await this.change({ kind: "length", markers, ...answer });
       }
     });
   }
@@ -574,6 +587,7 @@ export class Design {
       } else {
         this.take("select");
         this.studio.select(null);
+        this.studio.say("");
       }
       return true;
     }

@@ -23,7 +23,7 @@ export function openWindow(root, title, fill) {
 export function buttonRow(form, ...pairs) {
   const row = add(form, "p", { className: "buttons" });
   pairs.forEach(([textContent, value], index) =>
-    add(row, "button", { type: "submit", value, textContent, className: index === 0 ? "primary" : "" }),
+    add(row, "button", { type: "submit", value, textContent, className: index === 0 && (value || pairs.length > 1) ? "primary" : "" }),
   );
   return row;
 }
@@ -102,7 +102,7 @@ export class Menu {
     this.place.addEventListener("keydown", (event) => this.key(event));
   }
 
-  /** `items` have a `label`, and `act` or the reason `why` it cannot be done; a string is a heading. */
+  /** `items` have a `label`, maybe a `key`, and `act` or the reason `why` it cannot be done; a string is a heading. */
   open(items, [x, y]) {
     this.back = document.activeElement;
     this.place.replaceChildren();
@@ -114,6 +114,9 @@ export class Menu {
       const button = add(this.place, "button", { type: "button", disabled: !item.act || Boolean(item.why) });
       button.setAttribute("role", "menuitem");
       say(button, item.label);
+      if (item.key) {
+        add(button, "kbd", { textContent: item.key });
+      }
       if (item.why) {
         say(add(button, "small"), item.why);
       }

@@ -141,11 +141,13 @@ async function record(gif, kind, begun) {
   const brush = canvas.getContext("2d");
   brush.fillStyle = "#fff";
   brush.fillRect(0, 0, canvas.width, canvas.height);
+  const duration = first.duration;
+  first.close();
   const recorder = new MediaRecorder(canvas.captureStream(), { mimeType: kind, videoBitsPerSecond: 5e6 });
   const parts = [];
   recorder.ondataavailable = ({ data }) => parts.push(data);
   recorder.start();
-  begun((count * first.duration) / 1e6);
+  begun((count * duration) / 1e6);
   for (let frameIndex = 0; frameIndex < count; frameIndex += 1) {
     const { image } = await film.decode({ frameIndex });
     brush.drawImage(image, 0, 0);
@@ -210,7 +212,8 @@ export async function shareLink(studio) {
   try {
     await navigator.clipboard.writeText(link);
     const long = link.length > LONGEST_LINK ? `; with ${link.length} letters it is too long for some programs` : "";
-    studio.say(`The link is copied: whoever opens it has this mechanism${long}`);
+    const where = location.protocol === "file:" ? "; it opens on this computer alone, unlike one of a studio on a web server" : "";
+    studio.say(`The link is copied: whoever opens it has this mechanism${long}${where}`);
   } catch {
     await openWindow(studio.root, "Link", (form) => {
       add(form, "textarea", { value: link, rows: 6, readOnly: true }).select();

@@ -34,7 +34,8 @@ export class Inspector {
         button.append(icon(gesture.kind));
       }
       button.append(label);
-      button.addEventListener("click", () => this.studio.act(gesture));
+      // The second click of two is meant for what stood here before.
+      button.addEventListener("click", (event) => event.detail < 2 && this.studio.act(gesture));
     }
     const rows = add(this.place, "div", { className: "rows" });
     for (const row of answer.rows) {
@@ -82,7 +83,8 @@ export class Inspector {
     const take = () => {
       const text = field.value.trim();
       const isText = type === "text" && text !== "";
-      put(isText ? JSON.stringify(text) : text === plain(value ?? "") ? value : text);
+      const length = text.match(/^([-+]?[0-9.]+)\s*(mm|cm|inch|deg)$/);
+      put(length ? `"${length[1]}*${length[2]}"` : isText ? JSON.stringify(text) : text === plain(value ?? "") ? value : text);
     };
     field.addEventListener("change", take);
     field.addEventListener("keydown", (event) => {

@@ -7,6 +7,8 @@ const NEAR_POINT = { mouse: 12, pen: 14, touch: 24 };
 const NEAR_BAR = 0.8;
 // Distance within which a direction or the level of another point draws [pixels].
 const LEVEL = 6;
+// Distance below which two points are one [pixels].
+const SAME = 0.1;
 // Angle of the directions that draw [rad].
 const DIRECTIONS = Math.PI / 12;
 
@@ -14,10 +16,10 @@ const distance = ([x, y], [u, v]) => Math.hypot(u - x, v - y);
 
 /**
  * Returns what is at a place of the sheet [pixels]: `at` [m], and `point` (of the sketch), `body`
- * (its name) or neither. `origin`, a point [m], draws to horizontal and vertical and every 15°;
+ * (its name), with `things` a `thing` such as a spring, or none of them. `origin`, a point [m], draws to horizontal and vertical and every 15°;
  * `free` leaves grid and directions out; `without` are names of markers that are passed over.
  */
-export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, free = false, without = [] } = {}) {
+export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, free = false, without = [], things = false } = {}) {
   const near = NEAR_POINT[kind] ?? NEAR_POINT.mouse;
   const others = sketch.points.filter((point) => !point.markers.some((marker) => without.includes(marker)));
   const nearest = (items, far) =>
@@ -30,20 +32,36 @@ export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, fr
   const bars = sketch.bodies.flatMap((body) =>
     body.markers.some((marker) => without.includes(marker)) ? [] : body.bars.map(([from, to]) => ({ body, from, to })),
   );
+  const rods = things ? rodsOf(sketch) : [];
   const bar = nearest(
-    bars.map(({ body, from, to }) => {
+    [...bars, ...rods].map(({ body, name, from, to }) => {
       const foot = footOn(sheet.toScreen(from), sheet.toScreen(to), place);
-      return { body, at: sheet.toPoint(foot), far: distance(foot, place) };
+      return { body, name, at: sheet.toPoint(foot), far: distance(foot, place) };
     }),
     NEAR_BAR * near,
   );
   if (bar) {
-    return { at: bar.at, body: bar.body.name, guides: [] };
+    const found = bar.body ? { body: bar.body.name } : { thing: { kind: "thing", name: bar.name } };
+    return { at: bar.at, ...found, guides: [] };
   }
   if (free) {
     return { at: sheet.toPoint(place), guides: [] };
   }
-  return drawn(sheet, others, place, origin);
+  const there = drawn(sheet, others, place, origin);
+  // The grid may lead to a point that is further away than the pointer finds one.
+  const reached = pointAt(sheet, others, there.at);
+  return reached ? { ...there, at: reached.at, point: reached } : there;
+}
+
+/** Returns the point of the sketch at a point [m]. */
+export function pointAt(sheet, points, at) {
+  return points.find((point) => distance(sheet.toScreen(point.at), sheet.toScreen(at)) < SAME);
+}
+
+/** Returns the springs, dampers and cylinders, each with its ends [m]. */
+export function rodsOf({ forces = [], drivers = [] }) {
+  const rods = [...forces, ...drivers].filter(({ coordinate }) => coordinate === "distance");
+  return rods.map(({ name, at, to }) => ({ name, from: at, to }));
 }
 
 /** Returns the foot of a place on a line between two others. */

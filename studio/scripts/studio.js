@@ -20,6 +20,13 @@ const PAUSE = 900;
 const TOLD = 8000;
 // Templates that come first.
 const EVERYDAY = ["pendulum", "slider_crank", "four_bar", "tlv", "pendulum_free", "loader", "scotch_yoke", "cam_roller", "planetary_gear", "toggle_press"];
+// Gestures whose outcome is selected, by the lists in which it stands.
+const MAKERS = {
+  bodies: ["duplicate", "mirror"],
+  drivers: ["driver", "freedom", "cylinder"],
+  forces: ["spring", "damper", "load"],
+  stops: ["stop"],
+};
 const UNITS = { mm: 1e-3, cm: 1e-2, m: 1, inch: 0.0254 };
 
 class Studio {
@@ -153,11 +160,23 @@ class Studio {
       return answer;
     }
     this.say("");
+    const before = this.view.sketch;
     this.show(answer);
     if (gesture.kind === "mass") {
       this.select({ kind: "body", name: gesture.body });
     }
+    this.selectMade(gesture.kind, before);
     return answer;
+  }
+
+  /** Selects what a gesture has made, if it has numbers of its own. */
+  selectMade(kind, before) {
+    const list = Object.keys(MAKERS).find((name) => MAKERS[name].includes(kind));
+    const known = before?.[list]?.map((thing) => thing.name) ?? [];
+    const made = this.view.sketch?.[list]?.find((thing) => !known.includes(thing.name));
+    if (made) {
+      this.select({ kind: list === "bodies" ? "body" : "thing", name: made.name });
+    }
   }
 
   /** Shows what a gesture would draw. */
@@ -606,8 +625,8 @@ class Studio {
             ]
           : []),
         "Save",
-        { label: "Mechanism file (TOML)  Ctrl+S", act: () => saveFile(this) },
-        { label: "FMU  Ctrl+E", act: () => exportFmu(this) },
+        { label: "Mechanism file (TOML)", key: "Ctrl+S", act: () => saveFile(this) },
+        { label: "FMU", key: "Ctrl+E", act: () => exportFmu(this) },
         { label: "Picture (SVG)", act: () => saveDrawing(this, "svg"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Picture (PNG)", act: () => saveDrawing(this, "png"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Drawing for the workshop (DXF)", act: () => saveMade(this, "dxf", "image/vnd.dxf"), why: this.sheet.svg ? "" : "Nothing is drawn" },
@@ -710,6 +729,11 @@ class Studio {
         ["digits", "the length of what is drawn"],
         ["Esc", "give up; then Select"],
         ["Delete", "remove what is selected"],
+        ["Ctrl+D, F2", "duplicate, rename what is selected"],
+        ["wheel, dragging", "zoom, move the bare sheet"],
+        ["click on a length", "set it, or make it a parameter by a name"],
+        ["right click", "all that can be done with a thing"],
+        ["click in Motion", "path and speed of a point"],
         ["Ctrl+Z, Ctrl+Y", "undo, redo"],
         ["0", "show all"],
         ["Alt+M", "Design or Motion"],

@@ -17,6 +17,7 @@ KEYS = {
     "freedom": "f",
     "trace": "t",
     "mass": "m",
+    "spring": "i",
 }
 
 

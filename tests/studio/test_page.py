@@ -288,6 +288,68 @@ def test_a_length_clicked_becomes_a_parameter(sheet):
     assert sheet.file["parameters"]["rod_length"]["value"] == pytest.approx(0.3)
 
 
+def test_an_end_that_the_grid_leads_to_a_point_is_joined_there(sheet):
+    step, scale = sheet.page.evaluate(
+        """() => {
+          const { sheet } = document.querySelector(".studio").studio;
+          return [sheet.step, sheet.scale];
+        }"""
+    )
+    sheet.tool("link")
+    sheet.click((0, 0), (4 * step, 0))
+    # Nearer to the end of the first link than to any other point of the grid, yet further away from it
+    # than the pointer finds points.
+    beside = 0.45 * step
+    assert beside * scale > 12
+    sheet.tool("link")
+    sheet.click((4 * step + beside, -beside), (8 * step, -3 * step))
+    assert len(sheet.file["joints"]) == 1
+
+
+def test_a_spring_is_selected_by_a_click_and_once_it_is_made(sheet):
+    sheet.tool("link")
+    sheet.click((0, 0), ground=True)
+    sheet.click((0.2, 0))
+    sheet.tool("spring")
+    sheet.click((0.1, 0.15), (0.2, 0))
+    title = sheet.page.locator(".inspector h2")
+    assert title.inner_text() == "Force spring"
+    sheet.tool("select")
+    sheet.click((0.3, 0.2))
+    assert title.inner_text() != "Force spring"
+    sheet.click((0.15, 0.075))
+    assert title.inner_text() == "Force spring"
+    assert sheet.page.locator(".marks .selected.bar").count() == 1
+    # A double click on its name does not reach what comes to stand there.
+    sheet.click((0.3, 0.2))
+    sheet.page.locator(".related button", has_text="spring").dblclick()
+    assert "spring" in sheet.file["forces"]
+
+
+def test_a_named_length_is_changed_by_its_dimension(sheet):
+    crank(sheet)
+    sheet.tool("select")
+    sheet.click((0.175, 0.1))
+    for length, name in (("260", "rod_length"), ("280", "")):
+        sheet.page.locator(".marks .dimension").first.dispatch_event("pointerdown")
+        fields = sheet.page.locator("dialog input")
+        fields.nth(0).fill(length)
+        fields.nth(1).fill(name)
+        sheet.page.locator("dialog button.primary").click()
+    sheet.page.locator("dialog button.primary", has_text="Change rod_length").click()
+    assert sheet.file["parameters"]["rod_length"]["value"] == 0.28
+
+
+def test_a_form_takes_a_length_with_its_unit(sheet):
+    crank(sheet)
+    sheet.tool("select")
+    sheet.click((0.175, 0.1))
+    field = sheet.page.locator(".inspector .field", has_text="C x").locator("input")
+    field.fill("240 mm")
+    field.press("Enter")
+    assert sheet.file["bodies"]["link_2"]["markers"]["C"][0] == "240*mm"
+
+
 def test_a_free_end_dropped_on_a_pin_is_joined(sheet):
     crank(sheet)
     sheet.tool("link")

@@ -30,7 +30,10 @@ pub(super) fn join(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
     }
     let [from, to] = [marker, onto].map(|id| editing.drawn.place(id));
     let by = [to[0] - from[0], to[1] - from[1]];
-    move_points(editing, &[marker], by, Through::of(gesture))?;
+    // Points that meet already keep their bodies as they are.
+    if by.iter().any(|part| editing.rounded(*part).abs() > 0.0) {
+        move_points(editing, &[marker], by, Through::of(gesture))?;
+    }
     editing.join(marker_name(path), "revolute", [onto_path, path]);
     Ok(())
 }

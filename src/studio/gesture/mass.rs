@@ -29,6 +29,7 @@ pub(super) fn mass(editing: &mut Editing, name: &str, mass: &Value) -> Result<()
         return Err(format!("a mass is above zero, unlike {mass} kg").into());
     }
     if body.mass.is_some() {
+        follow_mass(editing, body, mass);
         let path = ["bodies", name, "mass"];
         editing.text.set(&path, &format!("{mass}"));
     } else {
@@ -52,31 +53,44 @@ pub(super) fn give_mass(editing: &mut Editing, body: &Body, mass: f64) {
     }
 }
 
-/// Returns the numbers of a body's mass that follow its markers to other places in its frame, each with
-/// its place in the text: those that are still the ones of the bar through its markers.
+/// Lets the inertia of a body follow its mass to another value \[kg\], if it is still the one of the bar
+/// through its markers.
+pub(super) fn follow_mass(editing: &mut Editing, body: &Body, mass: f64) {
+    let parts = followed(editing, body, Some(mass), |id| editing.drawn.inside(id));
+    editing.text.replace_all(&parts);
+}
+
+/// Returns the numbers of a body's mass that follow another `mass` \[kg\], and its markers to other
+/// places in its frame, each with its place in the text: those that are still the ones of the bar
+/// through its markers.
 pub(super) fn followed(
     editing: &Editing,
     body: &Body,
+    mass: Option<f64>,
     inside: impl Fn(MarkerId) -> [f64; 3],
 ) -> Vec<(Range<usize>, String)> {
     let path = |key: &'static str| ["bodies", &*body.name, key];
     let written = |place: Range<usize>| editing.text.as_str()[place].trim().parse::<f64>().ok();
-    let Some(mass) = editing.text.place(&path("mass")).and_then(written) else {
+    let Some(old_mass) = editing.text.place(&path("mass")).and_then(written) else {
         return Vec::new();
     };
+    let mass = mass.unwrap_or(old_mass);
     let before = Bar::through(body, |marker| editing.drawn.inside(marker));
     let now = Bar::through(body, inside);
     let mut parts = Vec::new();
+    let inertias = [before.inertia(old_mass), now.inertia(mass)];
     if let Some(place) = editing.text.place(&path("inertia"))
         && let Some(old) = written(place.clone())
-        && (old - before.inertia(mass)).abs() <= OWN * old
+        && (old - inertias[0]).abs() <= OWN * old
+        && inertias[0].to_bits() != inertias[1].to_bits()
     {
-        parts.push((place, format!("{}", now.inertia(mass))));
+        parts.push((place, format!("{}", inertias[1])));
     }
     let elements = [0, 1].map(|k| editing.text.element(&path("center"), k).and_then(written));
     if let Some(place) = editing.text.place(&path("center"))
         && let [Some(x), Some(y)] = elements
         && f64::hypot(x - before.middle[0], y - before.middle[1]) <= OWN * before.long
+        && now.center(editing) != before.center(editing)
     {
         parts.push((place, now.center(editing)));
     }

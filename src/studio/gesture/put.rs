@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::super::text::TomlText;
+use super::mass::follow_mass;
 use super::{Editing, Refusal};
 
 /// Sets the value at `path`, or an `element` of the list there, to the TOML in `value`, or takes it away
@@ -38,6 +39,11 @@ pub(super) fn put(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal>
     let mut plain = owners.filter(|owner| editing.text.has(owner) && !editing.text.has_keys(owner));
     if let Some(owner) = plain.next() {
         return Err(format!("`{}` is a value, which has no keys", owner.join(".")).into());
+    }
+    if let ["bodies", name, "mass"] = path[..]
+        && let (Ok(body), Ok(mass)) = (editing.body(name), value.parse())
+    {
+        follow_mass(editing, body, mass);
     }
     let Some(index) = element_of(gesture) else {
         match value.is_empty() {

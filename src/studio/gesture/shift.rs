@@ -66,7 +66,7 @@ impl Parts {
                     let place = meant.inside.get(&id).copied();
                     place.unwrap_or_else(|| editing.drawn.inside(id))
                 };
-                for (place, with) in followed(editing, body, inside) {
+                for (place, with) in followed(editing, body, None, inside) {
                     self.replace(place, with);
                 }
             }

@@ -27,6 +27,13 @@ impl<'a> Actions<'a> {
         let own = markers.iter().find(|path| !path.starts_with("ground."));
         let first = own.or(markers.first()).copied().unwrap_or_default();
         let [x, y, _] = self.editing.drawn.place(self.editing.marker(first)?);
+        let pinned = self.editing.drawn.pinned_to(self.editing.marker(first)?);
+        for path in markers {
+            if !pinned.contains(&self.editing.marker(path)?) {
+                let join = json!({ "kind": "join", "marker": first, "onto": path });
+                self.offer(&format!("Pin to {path}"), &join);
+            }
+        }
         self.offer(
             "Fix to ground",
             &json!({ "kind": "pivot", "marker": first }),

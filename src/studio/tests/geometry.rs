@@ -30,6 +30,32 @@ fn a_joined_pin_moves_onto_the_other_one() {
 }
 
 #[test]
+fn pins_that_meet_are_joined_where_they_are() {
+    let mut host = studio(EMPTY);
+    for points in [[[0.0, 0.0], [0.1, 0.1]], [[0.3, 0.0], [0.1, 0.1]]] {
+        let points = points.map(|at| json!({ "at": at }));
+        act_warned(&mut host, &json!({ "kind": "link", "points": points }));
+    }
+    let names = ["link.B", "link_2.D"];
+    let form = ask(&mut host, &json!({ "do": "inspect", "names": names }));
+    let actions = form["actions"].as_array().expect("a list");
+    let pin = (actions.iter()).find(|action| action["label"] == "Pin to link_2.D");
+    let before = host.text().to_owned();
+    act_warned(&mut host, &pin.expect("it is offered")["gesture"]);
+    let joint = "B = { type = \"revolute\", markers = [\"link_2.D\", \"link.B\"] }\n";
+    assert_eq!(host.text(), format!("{before}\n[joints]\n{joint}"));
+    let form = ask(&mut host, &json!({ "do": "inspect", "names": names }));
+    let is_pin = |action: &Value| action["label"] == "Pin to link_2.D";
+    assert!(
+        !form["actions"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .any(is_pin)
+    );
+}
+
+#[test]
 fn pins_that_are_joined_or_on_one_body_are_refused() {
     let mut host = two_bars();
     let mut why = |marker: &str, onto: &str| {
@@ -179,6 +205,16 @@ fn a_mass_follows_its_bar_until_it_has_numbers_of_its_own() {
         host.text()
     );
     assert!(host.text().contains("center = [0.1, 0]\n"));
+    let path = ["bodies", "link", "mass"];
+    act_warned(
+        &mut host,
+        &json!({ "kind": "put", "path": path, "value": "2" }),
+    );
+    assert!(host.text().contains("inertia = 0.00667\n"));
+    act_warned(
+        &mut host,
+        &json!({ "kind": "put", "path": path, "value": "1" }),
+    );
     let ends = ["link.A", "link.B"];
     let length = |value: f64| json!({ "kind": "length", "markers": ends, "value": value });
     act_warned(&mut host, &length(0.3));
