@@ -4,6 +4,10 @@ import { add } from "./controls.js";
 import { buttonRow, openWindow } from "./dialogs.js";
 import { lengthOf } from "./units.js";
 
+const KEPT_PICTURE = "biela.studio.picture";
+// Longest side of a picture that this browser keeps [pixels].
+const KEPT_SIDE = 1600;
+
 export class Background {
   constructor(studio, sheet) {
     this.studio = studio;
@@ -13,13 +17,7 @@ export class Background {
   /** Shows a picture file, so that it fills the sheet; asks for its scale. */
   async open(file) {
     this.remove();
-    this.image = add(this.sheet.place, "img", { className: "background", alt: "", draggable: false });
-    this.sheet.place.prepend(this.image);
-    this.image.src = URL.createObjectURL(file);
-    try {
-      await this.image.decode();
-    } catch {
-      this.remove();
+    if (!(await this.show(URL.createObjectURL(file)))) {
       this.studio.say(`${file.name} is no picture that this browser shows`);
       return;
     }
@@ -29,8 +27,51 @@ export class Background {
     this.unit = Math.min((0.9 * width) / naturalWidth, (0.9 * height) / naturalHeight) / this.sheet.scale;
     this.middle = [...this.sheet.center];
     this.look();
+    this.keep();
     this.studio.setMode("design");
     this.askScale();
+  }
+
+  /** Shows the picture at an address; false if the browser cannot. */
+  async show(address) {
+    this.image = add(this.sheet.place, "img", { className: "background", alt: "", draggable: false });
+    this.sheet.place.prepend(this.image);
+    this.image.src = address;
+    try {
+      await this.image.decode();
+      return true;
+    } catch {
+      this.remove();
+      return false;
+    }
+  }
+
+  /** Keeps the picture in this browser, no larger than it has to be. */
+  keep() {
+    const { naturalWidth, naturalHeight } = this.image;
+    const part = Math.min(1, KEPT_SIDE / Math.max(naturalWidth, naturalHeight));
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [naturalWidth, naturalHeight].map((side) => Math.max(1, Math.round(part * side)));
+    const brush = canvas.getContext("2d");
+    brush.fillStyle = "#fff";
+    brush.fillRect(0, 0, canvas.width, canvas.height);
+    brush.drawImage(this.image, 0, 0, canvas.width, canvas.height);
+    const unit = (this.unit * naturalWidth) / canvas.width;
+    try {
+      const address = canvas.toDataURL("image/jpeg", 0.85);
+      localStorage.setItem(KEPT_PICTURE, JSON.stringify({ address, unit, middle: this.middle }));
+    } catch {
+      // A full or forbidden store: the picture can be opened again.
+    }
+  }
+
+  /** Shows the picture that was kept, if there is one. */
+  async restore() {
+    const { address, unit, middle } = JSON.parse(localStorage.getItem(KEPT_PICTURE) ?? "{}");
+    if (address && (await this.show(address))) {
+      Object.assign(this, { unit, middle });
+      this.look();
+    }
   }
 
   /** Asks for two points whose distance is known. */
@@ -44,6 +85,11 @@ export class Background {
       URL.revokeObjectURL(this.image.src);
       this.image.remove();
       this.image = null;
+    }
+    try {
+      localStorage.removeItem(KEPT_PICTURE);
+    } catch {
+      // A forbidden store keeps none.
     }
   }
 
@@ -78,5 +124,6 @@ export class Background {
     this.unit *= factor;
     this.middle = [0, 1].map((k) => from[k] + factor * (this.middle[k] - from[k]));
     this.look();
+    this.keep();
   }
 }

@@ -174,6 +174,9 @@ class Studio {
     const list = Object.keys(MAKERS).find((name) => MAKERS[name].includes(kind));
     const known = before?.[list]?.map((thing) => thing.name) ?? [];
     const made = this.view.sketch?.[list]?.find((thing) => !known.includes(thing.name));
+    if (kind === "load") {
+      this.say("The force is an input of the FMU; in Motion it is set under Speeds and loads");
+    }
     if (made) {
       this.select({ kind: list === "bodies" ? "body" : "thing", name: made.name });
     }
@@ -633,6 +636,8 @@ class Studio {
         { label: "Moving picture (GIF)", act: () => saveMade(this, "gif", "image/gif"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Video (MP4 or WebM)", act: () => saveVideo(this), why: this.sheet.svg ? (videoKind() ? "" : "This browser records none") : "Nothing is drawn" },
         { label: "Copy a web link", act: () => shareLink(this) },
+        "",
+        { label: "Help", key: "F1", act: () => this.help() },
       ],
       [box.left, box.bottom + 2],
     );
@@ -808,6 +813,7 @@ async function begin() {
   if (!file) {
     try {
       file = JSON.parse(localStorage.getItem(KEPT));
+      await studio.background.restore();
     } catch {
       file = null;
     }

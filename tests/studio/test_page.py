@@ -288,6 +288,32 @@ def test_a_length_clicked_becomes_a_parameter(sheet):
     assert sheet.file["parameters"]["rod_length"]["value"] == pytest.approx(0.3)
 
 
+def test_the_picture_below_is_there_again_at_its_scale(sheet, tmp_path):
+    picture = tmp_path / "photo.svg"
+    picture.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="3200" height="1600"><rect width="3200" height="1600" fill="#eed"/></svg>'
+    )
+    width = """() => {
+      const { background } = document.querySelector(".studio").studio;
+      return background.image.naturalWidth * background.unit;
+    }"""
+    sheet.page.locator(".pictured").set_input_files(picture)
+    sheet.page.wait_for_selector(".sheet .background")
+    sheet.click((0, 0), (0.1, 0))
+    sheet.page.locator("dialog input").fill("300")
+    sheet.page.locator("dialog button.primary").click()
+    sheet.frame()
+    before = sheet.page.evaluate(width)
+    sheet.page.reload()
+    sheet.page.wait_for_selector(".studio.ready .background", state="attached")
+    assert sheet.page.evaluate(width) == pytest.approx(before)
+    sheet.page.locator(".file-menu").click()
+    sheet.page.get_by_role("menuitem", name="Remove the picture").click()
+    sheet.page.reload()
+    sheet.page.wait_for_selector(".studio.ready")
+    assert sheet.page.locator(".sheet .background").count() == 0
+
+
 def test_an_end_that_the_grid_leads_to_a_point_is_joined_there(sheet):
     step, scale = sheet.page.evaluate(
         """() => {
