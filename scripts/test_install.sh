@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs biela in empty environments and uses it there, without cargo on the PATH: the wheel of this
 # machine with pip, and its archive of `make dist`; and the sources with `cargo install`, without what
-# `make setup` makes. Under Wine it uses the archive for Windows, where both are there.
+# `make setup` makes. Under Wine it uses the archive for Windows, where both are there with a compiler
+# for Windows.
 #
 #   scripts/test_install.sh [pip archive cargo]...
 set -euo pipefail
@@ -72,11 +73,13 @@ test_archive() {
     (cd "$WORK/use" && "$WORK/archive/bin/biela" page first.toml)
     say "archive: $(basename "$archive") works"
     archive=$(archive windows-x86_64.zip)
-    if [ -n "$archive" ] && has wine; then
+    if [ -n "$archive" ] && has wine && has x86_64-w64-mingw32-gcc; then
         python3 -m zipfile -e "$archive" "$WORK/windows"
+        # As `make test-platforms` has it, with the library of Windows 10 that Wine lacks.
+        "$VENV_PYTHON" -c "import sys; sys.path.insert(0, 'tests/platforms'); import wine; wine.wine_prefix()"
+        export WINEPREFIX=$PWD/target/platforms/wine WINEDEBUG=-all
         (
             cd "$WORK/windows"/*/
-            export WINEPREFIX=$WORK/wine WINEDEBUG=-all
             wine bin/biela.exe new first --from four_bar
             wine bin/biela.exe export first.toml
             cmp first.fmu "$WORK/use/first.fmu"
