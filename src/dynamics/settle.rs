@@ -9,7 +9,7 @@ use super::given::Given;
 use super::passive::{Cause, Mode};
 use super::triangular::ascend;
 use crate::kinematics::{Solver, StopLimit};
-use crate::mechanism::{Force, JointKind, Load, Mechanism, Order, PassiveCause, fixed, shown};
+use crate::mechanism::{Force, JointKind, Mechanism, Order, PassiveCause, fixed, shown};
 
 /// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
 const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
@@ -58,9 +58,8 @@ impl Event {
     #[must_use]
     pub fn describe(&self, mechanism: &Mechanism) -> String {
         let Force { name, load, .. } = &mechanism.forces[self.force];
-        let (Load::Passive { coordinate, .. } | Load::Coordinate { coordinate, .. }) = load else {
-            unreachable!("events are those of passive forces");
-        };
+        let coordinate = load.coordinate();
+        let coordinate = coordinate.expect("events are those of passive forces");
         let joint = load.play().map(|joint| &mechanism.joints[joint].kind);
         let speed = |speed| {
             let unit = coordinate.kind.units()[1].suffix();

@@ -339,6 +339,17 @@ impl Load {
     /// Last parts of the names of a marker's force and torque.
     pub const COMPONENTS: [&str; 3] = ["fx", "fy", "torque"];
 
+    /// Returns the coordinate along which it acts, if there is one.
+    #[must_use]
+    pub fn coordinate(&self) -> Option<&Coordinate> {
+        match self {
+            Self::Coordinate { coordinate, .. } | Self::Passive { coordinate, .. } => {
+                Some(coordinate)
+            }
+            Self::Marker { .. } => None,
+        }
+    }
+
     /// Gives a component of an input a size, an expression in t and the parameters; those without
     /// one are zero. The force is no input any more.
     pub fn set_component(&mut self, component: usize, size: Expression) {

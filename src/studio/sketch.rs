@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::drawn::Drawn;
-use crate::mechanism::{Joint, JointKind, Load, MarkerId, Mechanism};
+use crate::mechanism::{Joint, JointKind, MarkerId, Mechanism};
 
 /// Describes what is drawn. Points are global \[m\], angles in radians.
 ///
@@ -49,21 +49,16 @@ pub(super) fn sketch(drawn: &Drawn) -> Value {
             })
         }).collect::<Vec<_>>(),
         "forces": mechanism.forces.iter().map(|force| {
-            let coordinate = match &force.load {
-                Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
-                    Some(coordinate)
-                }
-                _ => None,
-            };
-            let [at, to] = match coordinate {
-                Some(coordinate) => [coordinate.from, coordinate.to].map(|id| Some(drawn.place(id))),
-                None => [None; 2],
+            let coordinate = force.load.coordinate();
+            let place = |id: MarkerId| {
+                let [x, y, _] = drawn.place(id);
+                [x, y]
             };
             json!({
                 "name": force.name,
                 "coordinate": coordinate.map(|coordinate| coordinate.kind.word()),
-                "at": at.map(|[x, y, _]| [x, y]),
-                "to": to.map(|[x, y, _]| [x, y]),
+                "at": coordinate.map(|coordinate| place(coordinate.from)),
+                "to": coordinate.map(|coordinate| place(coordinate.to)),
             })
         }).collect::<Vec<_>>(),
         "stops": mechanism.stops.iter().map(|stop| json!({ "name": stop.name }))

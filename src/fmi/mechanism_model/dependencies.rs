@@ -341,7 +341,7 @@ impl<'a> DependencyTable<'a> {
             && !self.is_passive(force)
         {
             let load = &mechanism.forces[force].load;
-            if let Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } = load {
+            if let Some(coordinate) = load.coordinate() {
                 origins.extend(&structure.coordinate_dependencies(mechanism, coordinate));
             }
             for expression in load.expressions() {

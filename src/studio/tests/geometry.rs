@@ -205,16 +205,13 @@ fn a_mass_follows_its_bar_until_it_has_numbers_of_its_own() {
         host.text()
     );
     assert!(host.text().contains("center = [0.1, 0]\n"));
-    let path = ["bodies", "link", "mass"];
-    act_warned(
-        &mut host,
-        &json!({ "kind": "put", "path": path, "value": "2" }),
-    );
+    let put = |key: &str, value: &str| {
+        let path = ["bodies", "link", key];
+        json!({ "kind": "put", "path": path, "value": value })
+    };
+    act_warned(&mut host, &put("mass", "2"));
     assert!(host.text().contains("inertia = 0.00667\n"));
-    act_warned(
-        &mut host,
-        &json!({ "kind": "put", "path": path, "value": "1" }),
-    );
+    act_warned(&mut host, &put("mass", "1"));
     let ends = ["link.A", "link.B"];
     let length = |value: f64| json!({ "kind": "length", "markers": ends, "value": value });
     act_warned(&mut host, &length(0.3));
@@ -225,11 +222,7 @@ fn a_mass_follows_its_bar_until_it_has_numbers_of_its_own() {
         host.text()
     );
     assert!(host.text().contains("center = [0.15, 0]\n"));
-    let path = ["bodies", "link", "inertia"];
-    act_warned(
-        &mut host,
-        &json!({ "kind": "put", "path": path, "value": "0.01" }),
-    );
+    act_warned(&mut host, &put("inertia", "0.01"));
     act_warned(
         &mut host,
         &json!({ "kind": "shift", "markers": [ends[1]], "by": [0.1, 0.0] }),
