@@ -2,7 +2,7 @@
 // follows the pointer.
 
 import { angleTicks, ticks } from "./axis.js";
-import { add, offerMoves, shown } from "./controls.js";
+import { add, moveOf, offerMoves, shown } from "./controls.js";
 
 const [WIDTH, HEIGHT] = [560, 150];
 const [LEFT, RIGHT, TOP, BOTTOM] = [64, 10, 20, 22];
@@ -60,13 +60,12 @@ export class Chart {
 
   /** Asks for values, of these variables or of those chosen. */
   values(variables = this.chosen, samples = SAMPLES) {
-    const over = this.driver === null ? {} : { driver: this.driver };
-    return this.live.ask({ do: "chart", variables, samples, ...over });
+    return this.live.ask({ do: "chart", variables, samples, driver: this.driver });
   }
 
   /** Returns the driver along the horizontal axis, null for time. */
   get driver() {
-    return ["time", ""].includes(this.over.value) ? null : Number(this.over.value);
+    return moveOf(this.over);
   }
 
   /** Returns the variable along the horizontal axis, with the place of its value in a frame. */

@@ -46,6 +46,16 @@ export function offerMoves(list, page) {
   }
 }
 
+/** Returns the driver that is chosen in such a list, null for time. */
+export function moveOf(list) {
+  return ["time", ""].includes(list.value) ? null : Number(list.value);
+}
+
+/** Shows a picture that the solver has drawn, an SVG file. */
+export function showPicture(element, svg) {
+  element.innerHTML = svg.replace(/^<\?xml[^>]*>/, "");
+}
+
 /**
  * A row with a slider and a field for one value. `item` has name, description, unit and factor;
  * `low` and `high` bound the slider [SI], and `low_end` and `high_end` say what ends it there;

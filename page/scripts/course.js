@@ -43,17 +43,17 @@ export class Course {
     this.behind = picture.add("g", "behind");
     picture.svg.querySelector("[data-attachment]")?.before(this.behind);
     this.before = picture.add("g", "before");
-    const along = live.play.driver === null ? {} : { driver: live.play.driver };
+    const { driver } = live.play;
     if (poses.checked) {
       const { attachments, lengths } = live.places;
-      const answer = live.ask({ do: "poses", samples: POSES, ...along });
+      const answer = live.ask({ do: "poses", samples: POSES, driver });
       for (const places of answer?.poses ?? []) {
         this.addPose(places, lengths - attachments);
       }
     }
     this.dot = null;
     if (this.body !== null) {
-      const { points = [] } = live.ask({ do: "path", samples: ON_PATH, ...along }) ?? {};
+      const { points = [] } = live.ask({ do: "path", samples: ON_PATH, driver }) ?? {};
       const path = addTo(this.before, "path");
       path.setAttribute("d", points.map(([x, y], index) => `${index ? "L" : "M"}${fix(x)} ${fix(y)}`).join(""));
       this.dot = addTo(this.before, "circle");

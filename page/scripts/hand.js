@@ -9,7 +9,7 @@ export function giveHand(paper, live) {
   let held = null;
   let waiting = false;
   let panned = null;
-  // Where the pointer was pressed, until it has moved further than in a click.
+  // The place at which the pointer was pressed, until it has moved further than in a click.
   let pressed = null;
 
   paper.addEventListener(

@@ -1,13 +1,6 @@
 // Links that hold a mechanism: its file and tables, packed into the fragment of an address.
 
-async function through(stream, bytes) {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
-}
-
-/** Returns bytes of base64. */
-export function bytesOf(base64) {
-  return Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-}
+import { bytesOf, through } from "./solver.js";
 
 /** Returns base64 of bytes. */
 export async function base64Of(bytes) {
@@ -22,7 +15,7 @@ export async function base64Of(bytes) {
 /** Returns the address of a studio with a mechanism in it. */
 export async function linkTo(studio, { name, text, files }) {
   const content = JSON.stringify([name, text, files]);
-  const packed = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode(content));
+  const packed = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode(content)).arrayBuffer();
   const word = (await base64Of(packed)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
   return `${studio}#m=${word}`;
 }
@@ -34,7 +27,6 @@ export async function fileOfLink() {
     return null;
   }
   const packed = bytesOf(word.replaceAll("-", "+").replaceAll("_", "/"));
-  const bytes = await through(new DecompressionStream("deflate-raw"), packed);
-  const [name, text, files] = JSON.parse(new TextDecoder().decode(bytes));
+  const [name, text, files] = await through(new DecompressionStream("deflate-raw"), packed).json();
   return { name: String(name), text: String(text), files };
 }

@@ -1,7 +1,7 @@
 // A mechanism in a page: connects the solver with picture, controls, chart and files.
 
 import { Chart } from "./chart.js";
-import { Row, add, say, shown } from "./controls.js";
+import { Row, add, say, showPicture, shown } from "./controls.js";
 import { Course } from "./course.js";
 import { connectSaving } from "./files.js";
 import { giveHand } from "./hand.js";
@@ -452,7 +452,7 @@ export class Live {
     answer.pictures.forEach((picture, index) => {
       const button = add(place, "button", { type: "button" });
       button.setAttribute("aria-label", `Position ${index + 1}`);
-      button.innerHTML = picture.replace(/^<\?xml[^>]*>/, "");
+      showPicture(button, picture);
       button.addEventListener("click", () => {
         this.play.stop();
         if (this.move({ do: "choose", index })) {

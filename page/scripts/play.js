@@ -1,6 +1,6 @@
 // Motion by itself: time where motions are prescribed or freedoms move, otherwise a driver.
 
-import { offerMoves } from "./controls.js";
+import { moveOf, offerMoves } from "./controls.js";
 
 // Largest angle by which a driver turns per second [rad]: faster ones look as if they stood, or ran
 // backwards.
@@ -40,7 +40,7 @@ export class Play {
 
   /** The driver that moves, null for time. */
   get driver() {
-    return ["time", ""].includes(this.what.value) ? null : Number(this.what.value);
+    return moveOf(this.what);
   }
 
   toggle() {

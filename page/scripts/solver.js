@@ -3,11 +3,24 @@
 /** The solver has ended by a defect of its own; its instance is not to be used any more. */
 export class Broken extends Error {}
 
+/** Returns bytes of base64. */
+export function bytesOf(base64) {
+  return Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+}
+
+/** Returns what has been through a stream that packs or unpacks. */
+export function through(stream, bytes) {
+  return new Response(new Blob([bytes]).stream().pipeThrough(stream));
+}
+
+/** Unpacks base64 of gzip. */
+export function unzipped(base64) {
+  return through(new DecompressionStream("gzip"), bytesOf(base64));
+}
+
 /** Unpacks what an element of the page holds as base64 of gzip. */
 export function unpack(id) {
-  const base64 = document.getElementById(id).textContent.trim();
-  const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")));
+  return unzipped(document.getElementById(id).textContent.trim());
 }
 
 export class Solver {

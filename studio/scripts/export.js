@@ -3,7 +3,8 @@
 import { add, say, shown } from "./controls.js";
 import { buttonRow, openWindow } from "./dialogs.js";
 import { save } from "./files.js";
-import { base64Of, bytesOf, linkTo } from "./link.js";
+import { base64Of, linkTo } from "./link.js";
+import { bytesOf, unzipped } from "./solver.js";
 
 // Longest link that common programs keep whole [letters].
 const LONGEST_LINK = 8000;
@@ -18,8 +19,7 @@ async function loadPart(name) {
       script.onerror = () => failed(new Error(`parts/${name}.js is missing beside this page`));
     });
   }
-  const packed = new Blob([bytesOf(globalThis.bielaParts[name])]);
-  return new Response(packed.stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  return unzipped(globalThis.bielaParts[name]).arrayBuffer();
 }
 
 /** Writes the FMU of a file; `platforms` name the libraries that go into it. */
@@ -86,17 +86,21 @@ export function saveFile(studio) {
   save(`${studio.name}.toml`, "application/toml", studio.fileText);
 }
 
-/** Saves what the solver makes of the mechanism: `kind` is `dxf` or `gif`. */
+/** Returns what the solver makes of the mechanism: `kind` is `dxf` or `gif`. */
+function made(studio, kind) {
+  return studio.ask({ do: kind, ...studio.file, text: studio.fileText });
+}
+
+/** Saves what the solver makes of the mechanism. */
 export function saveMade(studio, kind, type) {
-  const { name, files } = studio.file;
-  const answer = studio.ask({ do: kind, name, text: studio.fileText, files });
+  const answer = made(studio, kind);
   if (answer?.content) {
     save(`${studio.name}.${kind}`, type, bytesOf(answer.content));
   }
   studio.say([answer?.problems, ...(answer?.notes ?? [])].filter(Boolean).join("; "));
 }
 
-// What browsers record, the most widely read first.
+// Kinds of videos that browsers record, the most widely read first.
 const VIDEOS = [
   ["video/mp4", "mp4"],
   ["video/webm", "webm"],
@@ -110,8 +114,7 @@ export function videoKind() {
 
 /** Saves the motion as a video, which takes as long as it lasts. */
 export async function saveVideo(studio) {
-  const { name, files } = studio.file;
-  const answer = studio.ask({ do: "gif", name, text: studio.fileText, files });
+  const answer = made(studio, "gif");
   if (!answer?.content) {
     studio.say(answer?.problems ?? "");
     return;

@@ -1,7 +1,7 @@
 // The studio: text and drawing of one mechanism, side by side, and the way out.
 
 import { Background } from "./background.js";
-import { add, say } from "./controls.js";
+import { add, say, showPicture } from "./controls.js";
 import { Design } from "./design.js";
 import { Menu, askName, buttonRow, openWindow } from "./dialogs.js";
 import { exportFmu, importFile, saveDrawing, saveFile, saveMade, saveVideo, shareLink, videoKind } from "./export.js";
@@ -679,7 +679,7 @@ class Studio {
         setTimeout(() => {
           const template = this.templates[buttons.indexOf(target)];
           template.picture ??= this.ask({ do: "svg", ...template }).svg ?? "";
-          target.querySelector(".picture").innerHTML = template.picture.replace(/^<\?xml[^>]*>/, "");
+          showPicture(target.querySelector(".picture"), template.picture);
         });
       }
     });
