@@ -813,10 +813,11 @@ async function begin() {
   if (!file) {
     try {
       file = JSON.parse(localStorage.getItem(KEPT));
-      await studio.background.restore();
     } catch {
       file = null;
     }
+    // A picture that cannot be read again takes no drawing with it.
+    await studio.background.restore().catch(() => {});
   }
   studio.open(file ?? { name: "mechanism.toml", text: EMPTY });
   root.classList.add("ready");
