@@ -46,9 +46,6 @@ export class Design {
     this.found = [];
     this.over = null;
     this.typed.hidden = true;
-    if (this.drag?.shown) {
-      this.studio.showAgain();
-    }
     this.forget();
     this.drag = null;
     this.mark();
@@ -167,12 +164,12 @@ export class Design {
     }
     this.over = this.look(event);
     if (this.drag) {
-      this.dragTo(this.over);
+      this.drag.to = this.over;
     } else {
       this.over.ground = this.isGround(event);
-      this.foresee();
       this.mark();
     }
+    this.foresee();
   }
 
   /** Whether a click is on ground. */
@@ -180,7 +177,7 @@ export class Design {
     return event.ctrlKey || event.metaKey || this.holds === "g";
   }
 
-  /** Shows what the last click of a tool would draw where the pointer is. */
+  /** Shows the next gesture, once per picture, for the last place of the pointer. */
   foresee() {
     if (this.foreseeing) {
       return;
@@ -188,17 +185,25 @@ export class Design {
     this.foreseeing = true;
     requestAnimationFrame(() => {
       this.foreseeing = false;
-      const { tool: name, found, over } = this;
-      const tool = TOOLS[name];
-      const isLast = found.length > 0 && found.length === tool.most - 1;
-      const fits = over && isLast && tool.gesture && !unfit(tool, found.length, over);
-      if (fits && !this.studio.preview(tool.gesture([...found, over])).refused) {
+      const gesture = this.nextGesture();
+      if (gesture && !this.studio.preview(gesture).refused) {
         this.foreseen = true;
-      } else {
+      } else if (!this.drag) {
         this.forget();
       }
       this.mark();
     });
+  }
+
+  /** Returns what a release, or the last click of a tool, would do where the pointer is; null for nothing. */
+  nextGesture() {
+    if (this.drag) {
+      return { ...this.gestureTo(this.drag.to), through: "parameter" };
+    }
+    const { found, over } = this;
+    const tool = TOOLS[this.tool];
+    const isLast = over && found.length > 0 && found.length === tool.most - 1;
+    return isLast && tool.gesture && !unfit(tool, found.length, over) ? tool.gesture([...found, over]) : null;
   }
 
   /** Shows the document again as it is. */
@@ -355,29 +360,7 @@ export class Design {
     const { drag } = this;
     const onto = drag.point && found.point ? found.point.markers[0] : null;
     const by = [found.at[0] - drag.from[0], found.at[1] - drag.from[1]];
-    const through = this.answers.get(drag.asks) ?? undefined;
-    return onto
-      ? { kind: "join", marker: drag.markers[0], onto, through }
-      : { kind: "shift", markers: drag.markers, by, through };
-  }
-
-  // One drawing per picture, for the last place of the pointer.
-  dragTo(found) {
-    this.drag.to = found;
-    if (this.drag.waits) {
-      return;
-    }
-    this.drag.waits = true;
-    requestAnimationFrame(() => {
-      if (!this.drag) {
-        return;
-      }
-      this.drag.waits = false;
-      const gesture = this.gestureTo(this.drag.to);
-      const answer = this.studio.preview(gesture.through ? gesture : { ...gesture, through: "parameter" });
-      this.drag.shown ||= !answer.refused;
-      this.mark();
-    });
+    return onto ? { kind: "join", marker: drag.markers[0], onto } : { kind: "shift", markers: drag.markers, by };
   }
 
   async end() {
@@ -388,6 +371,8 @@ export class Design {
     }
     const gesture = this.gestureTo(drag.to);
     this.drag = null;
+    // The outcome takes the place of what was foreseen.
+    this.foreseen = false;
     await this.change(gesture);
     this.mark();
   }
