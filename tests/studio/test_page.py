@@ -17,12 +17,16 @@ def crank(sheet):
     sheet.click((0.05, 0.1), (0.05, 0.1), (0.3, 0.1))
 
 
-def test_the_fmu_has_the_bytes_of_the_program(sheet, tmp_path):
+def slider_crank(sheet):
     crank(sheet)
     sheet.tool("slider")
     sheet.click((0.3, 0.1), (0.4, 0.1))
     sheet.tool("driver")
     sheet.click((0, 0))
+
+
+def test_the_fmu_has_the_bytes_of_the_program(sheet, tmp_path):
+    slider_crank(sheet)
     for fmi in ("2", "3"):
         fmu = sheet.export(fmi)
         file = tmp_path / "mechanism.toml"
@@ -143,11 +147,7 @@ def test_a_file_of_another_program_is_dropped_in(sheet):
     ],
 )
 def test_what_is_saved_begins_as_it_should(sheet, tmp_path, entry, start):
-    crank(sheet)
-    sheet.tool("slider")
-    sheet.click((0.3, 0.1), (0.4, 0.1))
-    sheet.tool("driver")
-    sheet.click((0, 0))
+    slider_crank(sheet)
     sheet.page.locator(".file-menu").click()
     with sheet.page.expect_download() as waiting:
         sheet.page.get_by_role("menuitem", name=entry).click()
@@ -158,11 +158,7 @@ def test_what_is_saved_begins_as_it_should(sheet, tmp_path, entry, start):
 
 
 def test_a_video_lasts_as_long_as_the_motion(sheet, tmp_path):
-    crank(sheet)
-    sheet.tool("slider")
-    sheet.click((0.3, 0.1), (0.4, 0.1))
-    sheet.tool("driver")
-    sheet.click((0, 0))
+    slider_crank(sheet)
     sheet.page.locator(".file-menu").click()
     with sheet.page.expect_download() as waiting:
         sheet.page.get_by_role("menuitem", name="Video").click()
