@@ -9,10 +9,13 @@
 //! negative eigenvalue, so that x minimises ½ xᵀ W x + bᵀ x between the bounds, and c̈ is unique. The
 //! same holds for impulses and the velocities after an impact.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Part of the diagonal at which a pivot is rounding: the row depends on others.
 const DEPENDENT: f64 = 1e-11;
+
+/// Part of a rate that is its rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// A force that bounds hold, at the present step of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,11 +25,21 @@ enum Place {
     Upper,
 }
 
-/// Returns x for `w` and `b`, with bounds `[lower, upper]` that have 0 in them.
+/// Returns x for `w` and `b`, with bounds `[lower, upper]` that have 0 in them. `noise` is the part of
+/// each `b` that is rounding. `None` where no forces obey: contacts press on what does not give way.
+///
+/// Rows that depend on each other may disagree, where something is driven: no forces make all
+/// c̈ = 0. ½ xᵀ W x + bᵀ x falls for ever then along an n with W n = 0, so that the forces go along it
+/// until one meets its bound.
 ///
 /// An active set is changed by one force at a time (Stark and Parker, Bounded-variable least squares):
 /// each step lowers the minimum, so that it ends.
-pub(super) fn solve(w: &DMatrix<f64>, b: &[f64], bounds: &[[f64; 2]]) -> DVector<f64> {
+pub(super) fn solve(
+    w: &DMatrix<f64>,
+    b: &[f64],
+    bounds: &[[f64; 2]],
+    noise: &[f64],
+) -> Option<DVector<f64>> {
     let count = b.len();
     let mut x = DVector::zeros(count);
     let mut places: Vec<Place> = bounds
@@ -39,12 +52,14 @@ pub(super) fn solve(w: &DMatrix<f64>, b: &[f64], bounds: &[[f64; 2]]) -> DVector
         .collect();
     // Far more steps than any set of forces takes.
     for _ in 0..16 * count * count + 16 {
-        descend(w, b, bounds, &mut x, &mut places);
+        if !descend(w, (b, noise), bounds, &mut x, &mut places) {
+            return None;
+        }
         let gradient = w * &x;
         let scale = |k: usize| {
             let row = w.row(k);
             let products = row.iter().zip(&x).map(|(w, x)| (w * x).abs());
-            1e-12 * products.fold(b[k].abs(), f64::max)
+            ROUNDING * products.fold(b[k].abs(), f64::max)
         };
         let violation = |k: usize| {
             let rate = gradient[k] + b[k];
@@ -66,24 +81,25 @@ pub(super) fn solve(w: &DMatrix<f64>, b: &[f64], bounds: &[[f64; 2]]) -> DVector
             None => break,
         }
     }
-    x
+    Some(x)
 }
 
 /// Moves the forces between their bounds to the minimum; those that meet a bound on the way stay there.
+/// Returns whether there is a minimum.
 fn descend(
     w: &DMatrix<f64>,
-    b: &[f64],
+    (b, noise): (&[f64], &[f64]),
     bounds: &[[f64; 2]],
     x: &mut DVector<f64>,
     places: &mut [Place],
-) {
+) -> bool {
     loop {
         let free: Vec<usize> = (0..b.len())
             .filter(|&k| places[k] == Place::Between)
             .collect();
-        let target = minimum(w, b, x, &free);
+        let (target, is_minimum) = minimum(w, (b, noise), x, &free);
         // The largest part of the way on which all stay between their bounds.
-        let mut part = 1.0;
+        let mut part = if is_minimum { 1.0 } else { f64::INFINITY };
         let mut met = None;
         for (&k, target) in free.iter().zip(&target) {
             let way = target - x[k];
@@ -96,48 +112,71 @@ fn descend(
                 (part, met) = (room.max(0.0), Some((k, bound, place)));
             }
         }
+        if part == f64::INFINITY {
+            return false;
+        }
         for (&k, target) in free.iter().zip(&target) {
             x[k] += part * (target - x[k]);
         }
-        let Some((k, bound, place)) = met else { return };
+        let Some((k, bound, place)) = met else {
+            return true;
+        };
         (x[k], places[k]) = (bound, place);
     }
 }
 
-/// Returns the free forces at the minimum, with the others as they are. A force whose row depends on
-/// those before it stays as it is.
-fn minimum(w: &DMatrix<f64>, b: &[f64], x: &DVector<f64>, free: &[usize]) -> Vec<f64> {
+/// Returns the free forces at the minimum, with the others as they are, and true. A force whose row
+/// depends on those before it stays as it is. Without a minimum, returns forces on the way down, and
+/// false.
+fn minimum(
+    w: &DMatrix<f64>,
+    (b, noise): (&[f64], &[f64]),
+    x: &DVector<f64>,
+    free: &[usize],
+) -> (Vec<f64>, bool) {
     let mut chosen: Vec<usize> = Vec::new();
-    let mut matrix = DMatrix::zeros(0, 0);
+    let mut factor = Cholesky::pack_dirty(DMatrix::zeros(0, 0));
     for &k in free {
         chosen.push(k);
         let trial = DMatrix::from_fn(chosen.len(), chosen.len(), |i, j| w[(chosen[i], chosen[j])]);
-        let factor = trial.clone().cholesky();
-        let pivot = factor.map_or(0.0, |factor| {
-            factor.l_dirty()[(chosen.len() - 1, chosen.len() - 1)]
-        });
-        if pivot * pivot > DEPENDENT * w[(k, k)] {
-            matrix = trial;
-        } else {
-            chosen.pop();
+        let last = chosen.len() - 1;
+        let found = trial.cholesky();
+        match found.filter(|found| found.l_dirty()[(last, last)].powi(2) > DEPENDENT * w[(k, k)]) {
+            Some(found) => factor = found,
+            None => {
+                chosen.pop();
+            }
         }
     }
     let mut target: Vec<f64> = free.iter().map(|&k| x[k]).collect();
-    let others = |row: usize| {
+    let place_of = |k: usize| free.iter().position(|&f| f == k).expect("one of these");
+    let solve = |side: &dyn Fn(usize) -> f64| {
+        let side = chosen.iter().map(|&k| side(k));
+        factor.solve(&DVector::from_iterator(chosen.len(), side))
+    };
+    for &k in free.iter().filter(|k| !chosen.contains(k)) {
+        // W n = 0, with 1 at k.
+        let others = solve(&|row| -w[(row, k)]);
+        let others = chosen.iter().copied().zip(others.iter().copied());
+        let n: Vec<(usize, f64)> = others.chain([(k, 1.0)]).collect();
+        let slope: f64 = n.iter().map(|(j, part)| b[*j] * part).sum();
+        let rounding = |(j, part): &(usize, f64)| (ROUNDING * b[*j].abs() + noise[*j]) * part.abs();
+        if slope.abs() > n.iter().map(rounding).sum() {
+            for (j, part) in n {
+                target[place_of(j)] -= slope.signum() * part;
+            }
+            return (target, false);
+        }
+    }
+    let of_fixed = |row: usize| {
         let fixed = (0..b.len()).filter(|k| !chosen.contains(k));
         fixed.map(|k| w[(row, k)] * x[k]).sum::<f64>()
     };
-    let side = DVector::from_iterator(chosen.len(), chosen.iter().map(|&k| -b[k] - others(k)));
-    if let Some(found) = matrix.cholesky().map(|factor| factor.solve(&side)) {
-        for (&k, value) in chosen.iter().zip(&found) {
-            let place = free
-                .iter()
-                .position(|&f| f == k)
-                .expect("chosen from these");
-            target[place] = *value;
-        }
+    let found = solve(&|row| -b[row] - of_fixed(row));
+    for (&k, value) in chosen.iter().zip(&found) {
+        target[place_of(k)] = *value;
     }
-    target
+    (target, true)
 }
 
 #[cfg(test)]
@@ -147,7 +186,7 @@ mod tests {
     const PUSH: [f64; 2] = [0.0, f64::INFINITY];
 
     fn assert_force(w: &DMatrix<f64>, b: f64, bounds: [f64; 2], force: f64) {
-        let found = solve(w, &[b], &[bounds])[0];
+        let found = solve(w, &[b], &[bounds], &[0.0]).expect("forces exist")[0];
         assert!((found - force).abs() < 1e-14, "{found} {force}");
     }
 
@@ -170,8 +209,37 @@ mod tests {
     #[test]
     fn dependent_frictions_hold_together() {
         let w = DMatrix::from_element(2, 2, 1.0);
-        let x = solve(&w, &[1.5, 1.5], &[[-1.0, 1.0], [-1.0, 1.0]]);
+        let bounds = [[-1.0, 1.0], [-1.0, 1.0]];
+        let x = solve(&w, &[1.5, 1.5], &bounds, &[0.0; 2]).expect("forces exist");
         assert!((x[0] + x[1] + 1.5).abs() < 1e-15, "{x}");
+    }
+
+    /// A block that the ground holds by 10, and a plate that slides on it by 2: the rows depend on each
+    /// other and disagree.
+    #[test]
+    fn dependent_frictions_that_disagree_slide() {
+        let w = DMatrix::from_element(2, 2, 1.0);
+        let bounds = [[-10.0, 10.0], [-2.0, 2.0]];
+        let x = solve(&w, &[5.0, 7.5], &bounds, &[0.0; 2]).expect("forces exist");
+        assert!(
+            (x[0] + 3.0).abs() < 1e-15 && (x[1] + 2.0).abs() < 1e-15,
+            "{x}"
+        );
+        let x = solve(&w, &[9.0, 6.5], &bounds, &[0.0; 2]).expect("forces exist");
+        assert!(
+            (x[0] + 10.0).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15,
+            "{x}"
+        );
+    }
+
+    /// Two driven jaws close on a part: no push opens them.
+    #[test]
+    fn contacts_that_squeeze_have_no_forces() {
+        let w = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.0]);
+        assert!(solve(&w, &[-1.0, -1.0], &[PUSH, PUSH], &[0.0; 2]).is_none());
+        assert!(solve(&w, &[-1.0, 2.0], &[PUSH, PUSH], &[0.0; 2]).is_some());
+        let still = DMatrix::zeros(1, 1);
+        assert!(solve(&still, &[-1.0], &[PUSH], &[0.0]).is_none());
     }
 
     /// The conditions hold for many random forces: they have no other solution for c̈.
@@ -194,7 +262,8 @@ mod tests {
                     _ => [-0.3, 0.3],
                 })
                 .collect();
-            let x = solve(&w, b.as_slice(), &bounds);
+            let noise = vec![0.0; count];
+            let x = solve(&w, b.as_slice(), &bounds, &noise).expect("b is in the range");
             let rates = &w * &x + &b;
             for k in 0..count {
                 let [lower, upper] = bounds[k];

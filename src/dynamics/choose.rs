@@ -3,10 +3,11 @@
 use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
+use super::impact::Press;
 use super::passive::Mode;
-use super::settle::{Contact, SLOW};
-use super::watch::FORCE_ROUNDING;
+use super::settle::Touch;
 use crate::kinematics::{self, Solver};
+use crate::mechanism::Order;
 
 /// Choices of what sticks, far more than it takes until they agree with the reactions.
 const MOST_CHOICES: usize = 10;
@@ -31,17 +32,19 @@ impl Equations {
         before: &[Mode],
     ) -> Result<(), Error> {
         let released = self.passive.modes.clone();
-        let choices = if self.passive.bearings.is_empty() {
-            1
-        } else {
-            MOST_CHOICES
-        };
+        let in_joint = self
+            .passive
+            .rubbing
+            .iter()
+            .find(|(_, joint)| joint.is_some());
+        let in_joint = in_joint.map(|(force, _)| *force);
+        let choices = in_joint.map_or(1, |_| MOST_CHOICES);
         for _ in 0..choices {
             self.passive.modes.clone_from(&released);
-            self.passive.joint_friction.freeze(true);
+            self.passive.friction.freeze(true);
             let chosen = self.evaluate(solver, given, time, x);
             let chosen = chosen.and_then(|()| self.choose_for(solver, given, (time, x)));
-            self.passive.joint_friction.freeze(false);
+            self.passive.friction.freeze(false);
             chosen?;
             self.evaluate(solver, given, time, x)?;
             if self.all_agree(&released) {
@@ -51,8 +54,8 @@ impl Equations {
         }
         let chosen = self.passive.modes.clone();
         if !self.try_all(solver, given, (time, x), &released) {
-            if let Some((first, _)) = self.passive.bearings.first() {
-                let force = self.passive.list[*first].index;
+            if let Some(first) = in_joint {
+                let force = self.passive.list[first].index;
                 return Err(Error::Kinematics(kinematics::Error::NoForce {
                     force: solver.mechanism().forces[force].name.clone(),
                     reason: "neither sticks nor slides here: the reactions that it makes agree with neither",
@@ -77,9 +80,8 @@ impl Equations {
         if self.evaluate(solver, given, time, x).is_err() {
             return false;
         }
-        let of_contacts = self.closed_contacts().into_iter();
-        let of_contacts =
-            of_contacts.map(|Contact { force, mode }| (force, vec![mode, Mode::Free]));
+        let of_contacts = self.closed().into_iter();
+        let of_contacts = of_contacts.map(|Touch { force, side }| (force, vec![side, Mode::Free]));
         let sliding = vec![Mode::Sticking, Mode::Growing, Mode::Falling];
         let of_frictions = self.undecided().into_iter().map(|k| (k, sliding.clone()));
         let options: Vec<(usize, Vec<Mode>)> = of_contacts.chain(of_frictions).collect();
@@ -100,21 +102,26 @@ impl Equations {
 
     /// Returns whether all that was released has a mode that agrees with the motion.
     fn all_agree(&self, released: &[Mode]) -> bool {
-        (0..released.len()).all(|k| released[k] != Mode::Free || self.agrees(k))
+        let agrees = |k: usize| {
+            let own = &self.passive.list[k];
+            own.cause
+                .agrees(self.passive.modes[k], &self.point.passive[k])
+        };
+        (0..released.len()).all(|k| released[k] != Mode::Free || agrees(k))
     }
 
     /// Returns the contacts that do not open.
-    fn closed_contacts(&self) -> Vec<Contact> {
-        let mut contacts = self.contacts();
-        contacts.retain(|contact| self.opening(*contact)[0] <= self.resting_speed(*contact));
-        contacts
+    fn closed(&self) -> Vec<Touch> {
+        let mut touches = self.touches();
+        touches.retain(|touch| self.opening(*touch)[0] <= self.at(*touch).resting_speed());
+        touches
     }
 
     /// Returns the friction that neither sticks nor slides yet.
     fn undecided(&self) -> Vec<usize> {
         let undecided = |k: &usize| {
             let is_friction = self.passive.list[*k].cause.friction().is_some();
-            is_friction && !self.passive.is_driven[*k] && self.passive.modes[*k] == Mode::Free
+            is_friction && self.passive.modes[*k] == Mode::Free
         };
         (0..self.passive.list.len()).filter(undecided).collect()
     }
@@ -125,7 +132,7 @@ impl Equations {
             let at = &self.point.passive[k];
             let value = at.coordinate.value;
             // A driver that jumps takes along what sticks.
-            let is_there = (value - self.passive.anchors[k]).abs() <= SLOW * at.rounding;
+            let is_there = (value - self.passive.anchors[k]).abs() <= at.slow(Order::Position);
             match self.passive.modes[k] {
                 Mode::AtMin => self.passive.anchors[k] = at.bounds[0],
                 Mode::AtMax => self.passive.anchors[k] = at.bounds[1],
@@ -137,34 +144,6 @@ impl Equations {
         }
     }
 
-    /// Returns whether the force of a passive force, or the acceleration of its coordinate, is one that
-    /// belongs to its mode.
-    fn agrees(&self, k: usize) -> bool {
-        let at = &self.point.passive[k];
-        match self.passive.modes[k] {
-            _ if self.passive.is_driven[k] => true,
-            Mode::Sticking => at.force.abs() < self.most_sticking(k),
-            mode @ (Mode::Growing | Mode::Falling) => {
-                mode.sign() * at.coordinate.second() >= -SLOW * at.rounding
-            }
-            mode if self.passive.is_held(k) => mode.sign() * at.force >= 0.0,
-            _ => {
-                let mut contacts = self.contacts().into_iter();
-                let closes = |contact: &Contact| {
-                    let [speed, acceleration] = self.opening(*contact);
-                    speed <= self.resting_speed(*contact) && acceleration < -SLOW * at.rounding
-                };
-                !contacts.any(|contact| contact.force == k && closes(&contact))
-            }
-        }
-    }
-
-    /// Returns the force up to which friction sticks; at its limit it does not, where the watch sees that
-    /// sticking ends.
-    fn most_sticking(&self, k: usize) -> f64 {
-        (1.0 - 4.0 * FORCE_ROUNDING) * self.point.passive[k].bounds[1]
-    }
-
     /// Chooses, for friction in joints with the reactions at hand.
     fn choose_for(
         &mut self,
@@ -174,14 +153,21 @@ impl Equations {
     ) -> Result<(), Error> {
         let (mut decided, mut reconsidered) = (Vec::new(), Vec::new());
         loop {
-            let contacts = self.closed_contacts();
+            let contacts = self.closed();
             let frictions = self.undecided();
             let of_contacts = contacts.iter().map(|contact| self.opening(*contact)[1]);
             let of_frictions = frictions
                 .iter()
                 .map(|&k| self.point.passive[k].coordinate.second());
             let accelerations: Vec<f64> = of_contacts.chain(of_frictions).collect();
-            let (forces, columns) = self.press(solver, &contacts, &frictions, &accelerations)?;
+            let held = (&*contacts, &[][..]);
+            let Press { forces, columns } = self.press(
+                solver,
+                held,
+                &frictions,
+                &accelerations,
+                Order::Acceleration,
+            )?;
             let (of_contacts, of_frictions) = forces.as_slice().split_at(contacts.len());
             // One begins to slide at a time, the one that does so with most energy: it exerts less then,
             // and others may stick.
@@ -191,8 +177,8 @@ impl Equations {
                 (first + column.dot(&motion)).abs() / column.norm()
             };
             let at_limit = frictions.iter().zip(of_frictions).enumerate();
-            let at_limit =
-                at_limit.filter(|(_, (k, force))| force.abs() >= self.most_sticking(**k));
+            let at_limit = at_limit
+                .filter(|(_, (k, force))| force.abs() >= self.point.passive[**k].most_sticking());
             let slides = at_limit.max_by(|(a, _), (b, _)| {
                 let [a, b] = [a, b].map(|place| eagerness(contacts.len() + place));
                 a.total_cmp(&b)
@@ -214,7 +200,7 @@ impl Equations {
                 let at = &self.point.passive[*k];
                 let column = self.passive.columns(&[*k], &self.freedoms, self.factor());
                 let second = at.coordinate.second() + column.column(0).dot(&motion);
-                self.passive.modes[*k].sign() * second < -SLOW * at.rounding
+                self.passive.modes[*k].sign() * second < -at.slow(Order::Acceleration)
                     && !reconsidered.contains(k)
             };
             if let Some(place) = decided.iter().position(turns_back) {
@@ -226,7 +212,7 @@ impl Equations {
             }
             for (contact, &force) in contacts.iter().zip(of_contacts) {
                 if force > 0.0 {
-                    self.passive.modes[contact.force] = contact.mode;
+                    self.passive.modes[contact.force] = contact.side;
                 }
             }
             for k in frictions {

@@ -3,11 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::error::Error;
+use super::gaps::GapWatch;
 use super::given::Given;
 use super::passive::{Passive, PassiveForces};
 use super::state::FreeState;
 use super::triangular::{ascend, descend};
-use super::watch::Watch;
+use super::watch::{Verdict, Watch};
 use crate::kinematics::{
     Blocked, Curve, Direction, EquationsOfMotion, ForceParts, Forces, KnownMotion, Path, Pose,
     Rates, Reason, Solution, Solver, SolverChoices,
@@ -44,6 +45,8 @@ pub(super) struct Equations {
     pub(super) factor: DMatrix<f64>,
     pub(super) accelerations: Vec<f64>,
     pub(super) passive: PassiveForces,
+    /// Whether steps need no proof where no gap is open: a single driver, and no open curves.
+    is_plain: bool,
     /// Rates of q for the reactions of joints with friction.
     rates: Rates,
     pub(super) watch: Watch,
@@ -116,8 +119,9 @@ impl Equations {
             along: vec![0.0; count],
             factor: DMatrix::zeros(count, count),
             accelerations: vec![0.0; count],
-            watch: Watch::default(),
+            watch: Watch::new(&passive, count),
             passive,
+            is_plain: solver.pose().drivers.len() < 2 && !solver.has_ends_of_curves(),
             rates: Rates::new(unknowns),
             accepted: point.clone(),
             point,
@@ -138,6 +142,7 @@ impl Equations {
     /// Accepts the point at which the equations and the solver are.
     pub(super) fn accept(&mut self, solver: &Solver) {
         self.accepted.copy_from(&self.point);
+        self.watch.accept(solver.pose().time);
         solver.save(&mut self.pose);
         solver.copy_choices(&mut self.choices);
         self.is_astray = false;
@@ -177,49 +182,71 @@ impl Equations {
         self.watch.goal(&self.passive, now, &self.accepted.passive)
     }
 
-    /// Looks for events between the accepted point and the present one. Returns the time at which the step
-    /// must end instead, if there is an earlier one.
-    pub(super) fn judge(&mut self, solver: &Solver) -> Option<f64> {
+    /// Notes the present point, of a stage of a step, for [`judge`](Self::judge).
+    pub(super) fn note(&mut self, time: f64, x: &[f64]) {
+        self.watch.stages.note(time, x, &self.point.passive);
+    }
+
+    /// Looks for events between the accepted point and the present one.
+    pub(super) fn judge(&mut self, solver: &Solver) -> Verdict {
         let times = [self.pose.time, solver.pose().time];
         let points = [&*self.accepted.passive, &*self.point.passive];
         self.watch.judge(&self.passive, times, points)
     }
 
-    /// Proves that one motion joins the accepted pose and that at the present point, where the
-    /// mechanism has several drivers or open curves: trials on the way may have led round a place at which
-    /// two assembly modes meet. The drivers move on parabolas between the two, which may lead to the end of
-    /// a curve.
-    pub(super) fn prove(&mut self, solver: &mut Solver) -> Result<(), Error> {
-        if self.point.drivers.len() < 2 && !solver.has_ends_of_curves() {
-            return Ok(());
+    /// Proves that one motion joins the accepted pose and that at the present point, and that no gap closes
+    /// on the way; [`is_event`](Watch::is_event) and the time at which the step must end tell otherwise.
+    ///
+    /// Without gaps a mechanism with one driver needs no proof. With several, or with open curves, trials on
+    /// the way may have led round a place at which two assembly modes meet, or to the end of a curve.
+    pub(super) fn prove(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+    ) -> Result<Option<f64>, Error> {
+        let (start, end) = (self.pose.time, solver.pose().time);
+        let h = (end - start).max(0.0);
+        let times = [start, end];
+        let has_gaps = h > 0.0 && self.passive.has_gaps(&self.accepted.passive);
+        if self.is_plain && !has_gaps {
+            return Ok(None);
         }
-        solver.save(&mut self.end);
-        self.return_to_accepted(solver);
-        self.is_astray = true;
-        let start = self.pose.time;
-        let h = self.end.time - start;
-        (self.path.start, self.path.duration) = (start, h.max(0.0));
-        self.path.from.copy_from_slice(&self.pose.parameters);
-        self.path.to.copy_from_slice(&self.pose.parameters);
-        let h = self.path.duration;
-        let ends = self.accepted.drivers.iter().zip(&self.end.drivers);
-        for (curve, (from, to)) in self.path.curves.iter_mut().zip(ends) {
-            let velocity = from.first();
-            let rest = to - from.value - h * velocity;
-            *curve = if h > 0.0 {
-                Curve::Input {
-                    position: from.value,
-                    velocity,
-                    acceleration: 2.0 * rest / (h * h),
-                    jump: 0.0,
-                }
-            } else {
-                Curve::held(*to, from.value)
+        self.set_curves(solver, given, times);
+        let Self {
+            watch,
+            passive,
+            accepted,
+            path,
+            freedoms,
+            ..
+        } = self;
+        let Watch { gaps, stages, .. } = watch;
+        let deviations = freedoms.iter().enumerate().map(|(k, freedom)| {
+            let Curve::Polynomial(on) = path.curves[freedom.index()] else {
+                return (freedom.index(), 0.0);
             };
-        }
-        let tracked = solver.track_past_stops(&self.path);
+            let value = |s: f64| on.iter().rev().fold(0.0, |sum, c| sum * s + c);
+            (freedom.index(), stages.deviation(times, k, value))
+        });
+        solver.save(&mut self.end);
+        let resumed = solver.resume(&self.pose, &self.choices);
+        debug_assert!(resumed, "the choices are the solver's own");
+        gaps.begin(passive, solver, &accepted.passive, deviations);
+        self.is_astray = true;
+        let mut gap_watch = GapWatch {
+            forces: passive,
+            gaps,
+        };
+        let tracked = solver.track_past_stops(path, has_gaps.then_some(&mut gap_watch as _));
         let is_same = tracked.is_ok() && solver.is_near(&self.end);
+        let closes = gaps.end.map(|part| start + part * h);
         solver.restore(&self.end);
+        if let Some(time) = closes.filter(|time| start < *time && *time < end)
+            && !watch.is_shortest(times)
+        {
+            watch.cut();
+            return Ok(Some(time));
+        }
         if let Err(Blocked {
             s,
             reason: Reason::Stop(limit),
@@ -231,11 +258,37 @@ impl Equations {
         }
         if is_same {
             self.is_astray = false;
-            return Ok(());
+            return Ok(None);
         }
         Err(Error::Blocked(
             "the step leads round a position at which assembly modes meet".to_owned(),
         ))
+    }
+
+    /// Sets the curves of the path from the accepted point to the present one: freedoms on polynomials of
+    /// degree 5 through both, what is given on its own, which is a cubic over a step or a prescribed motion.
+    fn set_curves(&mut self, solver: &Solver, given: &impl Given, [start, end]: [f64; 2]) {
+        let h = (end - start).max(0.0);
+        (self.path.start, self.path.duration) = (start, h);
+        self.path.from.copy_from_slice(&self.pose.parameters);
+        self.path.to.copy_from_slice(&self.pose.parameters);
+        let ends = self.accepted.drivers.iter().zip(&self.point.drivers);
+        let definitions = solver.mechanism().drivers.iter().enumerate();
+        for ((curve, ends), (index, driver)) in
+            self.path.curves.iter_mut().zip(ends).zip(definitions)
+        {
+            let by_part = |jet: &Jet| Jet::new(jet.value, [h * jet.first(), h * h * jet.second()]);
+            *curve = if h == 0.0 {
+                Curve::held(ends.1.value, ends.0.value)
+            } else if driver.is_free() {
+                Curve::through(by_part(ends.0), by_part(ends.1))
+            } else if driver.motion().is_some() {
+                Curve::Motion
+            } else {
+                let at = |part: f64| given.driver(DriverId(index), start + part * h).value;
+                Curve::cubic([ends.0.value, at(1.0 / 3.0), at(2.0 / 3.0), ends.1.value])
+            };
+        }
     }
 
     /// Puts the solver back to the accepted pose.
@@ -308,7 +361,7 @@ impl Equations {
         }
         // A trial may lie beyond a stop; only what is accepted is part of the motion.
         let tracked = match parameters {
-            Some(_) => solver.track_past_stops(&self.path),
+            Some(_) => solver.track_past_stops(&self.path, None),
             None => solver.track_through_stops(&self.path),
         };
         match tracked {
@@ -386,7 +439,6 @@ impl Equations {
             forces,
             motion,
             passive,
-            freedoms,
             ..
         } = self;
         let Point {
@@ -400,24 +452,28 @@ impl Equations {
         let velocity = |driver: DriverId| drivers[driver.index()].first();
         solver.write_equations(velocity, loads, forces, motion)?;
         *energy = motion.energy;
-        passive.begin(solver, freedoms, motion, at);
+        passive.begin(solver, motion, at);
         self.prepare(solver)?;
-        if self.passive.bearings.is_empty() {
+        if self.passive.rubbing.is_empty() {
             self.respond();
         } else {
-            self.solve_joint_friction(solver)?;
+            self.solve_friction(solver)?;
         }
         self.passive.exert(&self.point.passive, &mut self.motion);
         Ok(())
     }
 
-    /// Solves the friction in joints, and with it accelerations and forces that hold.
-    fn solve_joint_friction(&mut self, solver: &mut Solver) -> Result<(), Error> {
-        let mut friction = std::mem::take(&mut self.passive.joint_friction);
+    /// Solves friction, and with it accelerations and forces that hold.
+    fn solve_friction(&mut self, solver: &mut Solver) -> Result<(), Error> {
+        let mut friction = std::mem::take(&mut self.passive.friction);
+        let is_in_joints = friction.joints().next().is_some();
         let solved = friction.solve(|sizes, reactions| {
             let at = &mut self.point.passive;
-            self.passive.slide(sizes, at, &mut self.motion);
+            self.passive.rub(sizes, at, &mut self.motion);
             self.respond();
+            if !is_in_joints {
+                return Ok(());
+            }
             let Point { drivers, loads, .. } = &self.point;
             solver.solve_rates(|driver| drivers[driver.index()], &mut self.rates)?;
             let motion = KnownMotion {
@@ -426,12 +482,14 @@ impl Equations {
                 inputs: loads,
             };
             solver.solve_forces(motion, REACTIONS, &mut self.forces)?;
-            for (reaction, (_, joint)) in reactions.iter_mut().zip(&self.passive.bearings) {
-                *reaction = self.forces.reaction(*joint);
+            for (reaction, (_, joint)) in reactions.iter_mut().zip(&self.passive.rubbing) {
+                if let Some(joint) = joint {
+                    *reaction = self.forces.reaction(*joint);
+                }
             }
             Ok(())
         });
-        self.passive.joint_friction = friction;
+        self.passive.friction = friction;
         self.passive.bound(&mut self.point.passive);
         solved
     }
@@ -500,7 +558,8 @@ impl Equations {
         }
         self.factorise(solver)?;
         if self.passive.holds() {
-            self.passive.prepare(&self.freedoms, &self.factor);
+            self.passive
+                .prepare(&self.freedoms, &self.factor, &mut self.point.passive);
         }
         Ok(())
     }

@@ -14,10 +14,14 @@
 //! | `state` | [`FreeState`]: all numbers on which a motion depends |
 //! | `charts` | the coordinates in which the freedoms are integrated |
 //! | `triangular`, `bounded` | triangular factors; forces between bounds |
-//! | `passive` | [`Passive`] forces, those of stops and friction, and their modes |
+//! | `event` | [`Event`]s, and how they are called |
+//! | `passive` | [`Passive`] forces, those of stops and friction: their modes, a file per cause |
+//! | `stages` | bounds of speeds and forces between the ends of a step |
+//! | `gaps` | the proof that no gap closes between the ends of a step |
 //! | `watch` | the search for the instants at which modes end |
 //! | `equations` | the right-hand side |
-//! | `settle` | events: impacts, and the modes after them |
+//! | `impact` | velocities after impacts |
+//! | `settle` | the modes after an event |
 //! | `choose` | the choice of what is held after an event |
 //! | `variations` | the changes of a motion along directions |
 //! | `trials` | the system that the integrator steps |
@@ -29,12 +33,16 @@ mod charts;
 mod choose;
 mod equations;
 mod error;
+mod event;
+mod gaps;
 mod given;
+mod impact;
 pub mod integrator;
 mod linear;
 mod motion;
 mod passive;
 mod settle;
+mod stages;
 mod state;
 mod trials;
 mod triangular;
@@ -43,10 +51,10 @@ mod watch;
 
 pub use charts::keeps_coordinates;
 pub use error::Error;
+pub use event::{Event, EventKind};
 pub use given::Given;
 pub use linear::StateSpace;
 pub use motion::FreeMotion;
 pub use passive::{Mode, Passive};
-pub use settle::{Event, EventKind};
 pub use state::FreeState;
 pub use watch::event_indicators;

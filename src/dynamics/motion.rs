@@ -7,9 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use super::charts::Charts;
 use super::equations::Equations;
 use super::error::Error;
+use super::event::Event;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
-use super::settle::Event;
 use super::state::FreeState;
 use super::trials::Trials;
 use super::watch::FUNCTIONS;
@@ -426,6 +426,8 @@ impl FreeMotion {
         loop {
             let now = self.integrator.state().t;
             if now.to_bits() == until.to_bits() {
+                // A motion that is restored here goes on with the same steps.
+                self.equations.watch.begin();
                 return Ok(());
             }
             end_of_curve = end_of_curve.filter(|end| *end > now);
@@ -511,7 +513,8 @@ impl FreeMotion {
         let off = |k: usize| {
             let at = &point.passive[k];
             let off = at.coordinate.value - passive.anchors[k];
-            off.abs().max(at.coordinate.first().abs()) > DRIFT * at.rounding
+            let slow = DRIFT * at.gap_rounding().max(at.speed_rounding());
+            !at.is_dependent && off.abs().max(at.coordinate.first().abs()) > slow
         };
         (0..point.passive.len()).any(|k| passive.is_held(k) && off(k))
     }

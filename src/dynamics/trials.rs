@@ -6,6 +6,7 @@ use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
 use super::integrator::{Failure, System};
+use super::watch::Verdict;
 use crate::kinematics::Solver;
 
 /// A mechanism on a trial step.
@@ -27,6 +28,9 @@ impl<G: Given> System for Trials<'_, G> {
         equations.set_drivers(solver, *given, t, x);
         equations.go(solver, t, None).map_err(Failure::Trial)?;
         let written = equations.write(solver, dx);
+        if written.is_ok() {
+            equations.note(t, x);
+        }
         let written = written.and_then(|()| equations.vary(solver, x, dx));
         written.map_err(|error| match error {
             // No shorter step finds a mass.
@@ -58,15 +62,20 @@ impl<G: Given> System for Trials<'_, G> {
     }
 
     fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
-        if let Some(time) = self.equations.judge(self.solver) {
-            return Err(Failure::Cut(time));
+        match self.equations.judge(self.solver) {
+            Verdict::Lasts => {}
+            Verdict::Ends(time) => return Err(Failure::Cut(time)),
+            Verdict::Unclear => return Err(Failure::Unclear),
         }
-        let proved = self.equations.prove(self.solver);
-        proved.map_err(|error| match error {
+        let proved = self.equations.prove(self.solver, self.given);
+        let closes = proved.map_err(|error| match error {
             // The time of a stop is known: no shorter steps have to find it.
             Error::Stop { .. } => Failure::Hard(error),
             _ => Failure::Trial(error),
         })?;
+        if let Some(time) = closes {
+            return Err(Failure::Cut(time));
+        }
         self.equations.accept(self.solver);
         Ok(())
     }

@@ -10,7 +10,7 @@ use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
 use super::triangular::{ascend, descend};
-use crate::kinematics::{Direction, ForceQuantity, KnownMotion, Rates, Solver};
+use crate::kinematics::{Direction, ForceQuantity, ForceSensitivity, KnownMotion, Rates, Solver};
 use crate::mechanism::Jet;
 
 impl Equations {
@@ -88,8 +88,8 @@ impl Equations {
         direction: &mut Direction,
         loads: &mut [f64],
     ) -> Result<(), Error> {
-        self.complete_with(solver, rates, direction, loads, &[])?;
-        if !self.passive.joint_friction.slides() {
+        self.complete_with(solver, rates, direction, loads, None)?;
+        if !self.passive.friction.slides_in_joints() {
             return Ok(());
         }
         let motion = KnownMotion {
@@ -98,19 +98,18 @@ impl Equations {
             inputs: &self.point.loads,
         };
         let stays = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
-        let along = solver.sensitivity(rates, &self.point.drivers, direction)?;
-        let sliding = self.passive.joint_changes(&along, &stays).to_vec();
-        self.complete_with(solver, rates, direction, loads, &sliding)
+        self.complete_with(solver, rates, direction, loads, Some(&stays))
     }
 
-    /// Completes a direction for these changes of the friction in joints that slide, none if empty.
+    /// Completes a direction, with friction in joints from the changes of the forces where it stays as it
+    /// is: without these it does.
     fn complete_with(
         &mut self,
         solver: &mut Solver,
         rates: &Rates,
         direction: &mut Direction,
         loads: &mut [f64],
-        sliding: &[f64],
+        stays: Option<&ForceSensitivity>,
     ) -> Result<(), Error> {
         for freedom in &self.freedoms {
             direction.drivers[freedom.index()].derivatives[1] = 0.0;
@@ -128,10 +127,7 @@ impl Equations {
         let mut coordinates = Vec::new();
         if !passive.is_empty() {
             let sensitivity = solver.sensitivity(rates, &point.drivers, direction)?;
-            coordinates = passive.changes(&sensitivity, &mut loads[of_passive..]);
-            for ((k, _), change) in passive.bearings.iter().zip(sliding) {
-                loads[of_passive + k] = *change;
-            }
+            coordinates = passive.changes(&sensitivity, stays, &mut loads[of_passive..]);
         }
         let motion = KnownMotion {
             rates,

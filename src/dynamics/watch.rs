@@ -5,8 +5,14 @@
 //! friction that sticks from its limits. A step ends at the first zero of one of them, to rounding: where
 //! the step would go beyond, it is taken again up to the place at which a cubic through values and rates
 //! at both ends, or a secant where rates are not known, has its zero.
+//!
+//! A step is accepted only if no function goes below zero and comes back between its ends. Gaps follow
+//! from the places of the bodies, and are [proved](super::gaps) to stay open. Speeds and forces are
+//! bounded by the [stages](super::stages) of the step.
 
-use super::passive::{Cause, Mode, Passive, PassiveForces};
+use super::gaps::Gaps;
+use super::passive::{Passive, PassiveForces};
+use super::stages::Stages;
 use crate::mechanism::{Load, Mechanism};
 
 /// Functions per passive force.
@@ -23,19 +29,23 @@ const MOST_CUTS: i32 = 80;
 pub(super) struct Function {
     pub(super) value: f64,
     /// Its rate, unless it is a force.
-    rate: Option<f64>,
+    pub(super) rate: Option<f64>,
     /// A value that is rounding.
-    rounding: f64,
+    pub(super) rounding: f64,
+    /// For a gap, the direction in which it grows with its coordinate.
+    pub(super) gap: Option<f64>,
 }
 
 /// The search along a motion.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Watch {
     /// Whether a mode ends at the accepted point.
     pub(super) is_event: bool,
     /// Steps cut in a row.
     cuts: i32,
     beyond: Option<Beyond>,
+    pub(super) stages: Stages,
+    pub(super) gaps: Gaps,
 }
 
 /// A function that is below zero at a time.
@@ -49,72 +59,58 @@ struct Beyond {
     scale: f64,
 }
 
-impl PassiveForces {
-    /// Returns a function of a passive force at a point; `None` if it cannot end the mode.
-    pub(super) fn function(&self, index: usize, at: &Passive, side: usize) -> Option<Function> {
-        let mode = self.modes[index];
-        let [value, rate] = [at.coordinate.value, at.coordinate.first()];
-        let is_max = side == 1;
-        let sign = if is_max { -1.0 } else { 1.0 };
-        let limit = at.bounds[side];
-        let force = |value: f64| Function {
-            value,
-            rate: None,
-            rounding: at.force_rounding,
-        };
-        let place = |sign: f64, limit: f64| Function {
-            value: sign * (value - limit),
-            rate: Some(sign * rate),
-            rounding: at.rounding,
-        };
-        let is_elastic = matches!(self.list[index].cause, Cause::Elastic(_));
-        Some(match mode {
-            Mode::Free if limit.is_finite() => place(sign, limit),
-            Mode::AtMin | Mode::AtMax if side == 0 => force(mode.sign() * at.force),
-            Mode::AtMin if is_elastic => place(-1.0, at.bounds[0]),
-            Mode::AtMax if is_elastic => place(1.0, at.bounds[1]),
-            Mode::LooseAtMin | Mode::LooseAtMax if side == 0 => force(-mode.sign() * at.force),
-            Mode::LooseAtMin => place(-1.0, at.bounds[0]),
-            Mode::LooseAtMax => place(1.0, at.bounds[1]),
-            Mode::Growing | Mode::Falling if side == 0 => Function {
-                value: mode.sign() * rate,
-                rate: Some(mode.sign() * at.coordinate.second()),
-                rounding: at.rounding,
-            },
-            Mode::Sticking => force(sign * (at.force - limit)),
-            _ => return None,
-        })
-    }
+/// The verdict on a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// All modes last up to its end, as far as gaps are open between.
+    Lasts,
+    /// It must end at this time, as a mode ends before \[s\].
+    Ends(f64),
+    /// A mode may end between its ends: shorter steps tell.
+    Unclear,
 }
 
 impl Watch {
-    /// Begins at a point.
-    pub(super) fn begin(&mut self) {
-        *self = Self::default();
+    /// Makes the storage.
+    pub(super) fn new(forces: &PassiveForces, freedoms: usize) -> Self {
+        Self {
+            is_event: false,
+            cuts: 0,
+            beyond: None,
+            stages: Stages::new(forces.list.len(), freedoms),
+            gaps: Gaps::default(),
+        }
     }
 
-    /// Judges a step between two times and points. Returns the time at which it must end instead, if a
-    /// mode ends before.
+    /// Begins at a point.
+    pub(super) fn begin(&mut self) {
+        (self.is_event, self.cuts, self.beyond) = (false, 0, None);
+        self.stages.forget();
+    }
+
+    /// Judges a step between two times and points.
     pub(super) fn judge(
         &mut self,
         forces: &PassiveForces,
         [start, end]: [f64; 2],
         [from, to]: [&[Passive]; 2],
-    ) -> Option<f64> {
+    ) -> Verdict {
         let h = end - start;
-        let resolution = 4.0 * f64::EPSILON * start.abs().max(end.abs());
-        let is_shortest = h <= resolution || self.cuts >= MOST_CUTS;
+        let is_shortest = self.is_shortest([start, end]);
         let mut first: Option<(f64, Beyond)> = None;
+        let mut is_clear = true;
         self.is_event = false;
         for index in 0..forces.list.len() * FUNCTIONS {
             let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
             let [before, after] = [from, to].map(|at| forces.function(force, &at[force], side));
             let (Some(before), Some(after)) = (before, after) else {
+                // A limit that is gone at the end was passed on the way.
+                is_clear &= before.is_none();
                 continue;
             };
             let known = self.beyond.filter(|beyond| beyond.index == index);
             let slack = before.slack(&after, known.map_or(0.0, |beyond| beyond.scale));
-            if after.value < -slack || before.dips(&after, h, slack) {
+            if after.value < -slack {
                 // After cuts in a row the start counts as nearer (the Illinois method).
                 let cuts = known.map_or(0, |_| self.cuts);
                 let zero = before.zero(&after, h, slack, 0.5_f64.powi(cuts));
@@ -128,28 +124,60 @@ impl Watch {
                     };
                     first = Some((zero, beyond));
                 }
-            } else if before.ends_at(&after) {
-                self.is_event = true;
+                continue;
+            }
+            self.is_event |= before.ends_at(&after);
+            if before.gap.is_none() {
+                let value = |at: &[Passive]| {
+                    forces
+                        .function(force, &at[force], side)
+                        .map(|function| function.value)
+                };
+                let ends = [before, after];
+                let times = [start, end];
+                is_clear &= self.stages.tell_clear(ends, times, slack, value);
             }
         }
+        if !is_clear && first.is_none() && !is_shortest {
+            return Verdict::Unclear;
+        }
         let Some((zero, beyond)) = first else {
-            self.cuts = 0;
-            self.beyond = self.beyond.filter(|beyond| beyond.time > end);
-            if let Some(beyond) = &mut self.beyond {
-                beyond.value *= 0.5;
-            }
-            return None;
+            return Verdict::Lasts;
         };
         let inside = |time: &f64| start < *time && *time < end;
         let cut = [start + zero, start + 0.5 * h].into_iter().find(inside);
-        let cut = cut.filter(|_| !is_shortest);
-        if cut.is_some() {
-            self.cuts += 1;
-            self.beyond = Some(beyond);
-        } else {
-            self.is_event = true;
+        match cut.filter(|_| !is_shortest) {
+            Some(time) => {
+                self.cuts += 1;
+                self.beyond = Some(beyond);
+                Verdict::Ends(time)
+            }
+            None => {
+                self.is_event = true;
+                Verdict::Lasts
+            }
         }
-        cut
+    }
+
+    /// Returns whether a step may not be cut any more.
+    pub(super) fn is_shortest(&self, [start, end]: [f64; 2]) -> bool {
+        let resolution = 4.0 * f64::EPSILON * start.abs().max(end.abs());
+        end - start <= resolution || self.cuts >= MOST_CUTS
+    }
+
+    /// Counts a step that is cut for a gap.
+    pub(super) fn cut(&mut self) {
+        self.is_event = false;
+        self.cuts += 1;
+    }
+
+    /// Accepts a step with this end.
+    pub(super) fn accept(&mut self, end: f64) {
+        self.cuts = 0;
+        self.beyond = self.beyond.filter(|beyond| beyond.time > end);
+        if let Some(beyond) = &mut self.beyond {
+            beyond.value *= 0.5;
+        }
     }
 
     /// Returns the time at which the next step from an accepted point had better end: on the way to a
@@ -183,13 +211,43 @@ pub fn event_indicators(mechanism: &Mechanism) -> Vec<usize> {
 }
 
 impl Function {
+    /// Returns the distance of a coordinate from a limit, which grows with it for a sign of 1.
+    pub(super) fn place(at: &Passive, sign: f64, limit: f64) -> Self {
+        Self {
+            value: sign * (at.coordinate.value - limit),
+            rate: Some(sign * at.coordinate.first()),
+            rounding: at.gap_rounding(),
+            gap: Some(sign),
+        }
+    }
+
+    /// Returns the rate of a coordinate, or its opposite for a sign of −1.
+    pub(super) fn speed(at: &Passive, sign: f64) -> Self {
+        Self {
+            value: sign * at.coordinate.first(),
+            rate: Some(sign * at.coordinate.second()),
+            rounding: at.speed_rounding(),
+            gap: None,
+        }
+    }
+
+    /// Returns a force, or its distance from a limit.
+    pub(super) fn force(at: &Passive, value: f64) -> Self {
+        Self {
+            value,
+            rate: None,
+            rounding: at.force_rounding,
+            gap: None,
+        }
+    }
+
     /// Returns the function as an event indicator: negative beyond rounding.
     pub(super) fn indicator(&self) -> f64 {
         self.value + 2.0 * self.rounding
     }
 
     /// Returns how far below zero the function may be at an event.
-    fn slack(&self, after: &Self, scale: f64) -> f64 {
+    pub(super) fn slack(&self, after: &Self, scale: f64) -> f64 {
         let rounding = self.rounding.max(after.rounding);
         match self.rate {
             Some(_) => rounding,
@@ -209,57 +267,23 @@ impl Function {
         after.value <= 0.0 && falls
     }
 
-    /// Returns the coefficients of the cubic through values and rates at both ends of a step, in powers of
-    /// a part of it; those of a straight line for a force.
-    fn cubic(&self, after: &Self, h: f64) -> [f64; 4] {
-        let rise = after.value - self.value;
-        let [Some(first), Some(last)] = [self.rate, after.rate] else {
-            return [self.value, rise, 0.0, 0.0];
-        };
-        let (first, last) = (h * first, h * last);
-        let third = first + last - 2.0 * rise;
-        [self.value, first, rise - first - third, third]
-    }
-
-    /// Returns the value on the cubic at a part of a step.
-    fn between(&self, after: &Self, h: f64, part: f64) -> f64 {
-        let [value, first, second, third] = self.cubic(after, h);
-        value + part * (first + part * (second + part * third))
-    }
-
-    /// Returns whether the function goes below zero and comes back within a step, as far as values and
-    /// rates at its ends tell.
-    fn dips(&self, after: &Self, h: f64, slack: f64) -> bool {
-        match (self.rate, after.rate) {
-            (Some(first), Some(last)) if first < 0.0 && last > 0.0 => {
-                self.between(after, h, self.lowest(after, h)) < -slack
-            }
-            _ => false,
-        }
-    }
-
-    /// Returns the part of a step at which the cubic is lowest, where it falls at first and rises at
-    /// last.
-    fn lowest(&self, after: &Self, h: f64) -> f64 {
-        let [_, first, second, third] = self.cubic(after, h);
-        let slope = |part: f64| first + part * (2.0 * second + 3.0 * part * third);
-        bisect(0.0, 1.0, |part| slope(part) < 0.0)
-    }
-
-    /// Returns the time from the start of a step at which the function is a little below zero; a secant
-    /// counts the value at the start with a weight.
+    /// Returns the time from the start of a step at which the function, which ends below zero, is a
+    /// little below it; a secant counts the value at the start with a weight.
     fn zero(&self, after: &Self, h: f64, slack: f64, weight: f64) -> f64 {
         // A bounce ends where it began, so that it gains no height.
         let aim = (-0.5 * slack).min(self.value);
-        if self.rate.is_some() {
-            let last = match after.value < -slack {
-                true => 1.0,
-                false => self.lowest(after, h),
-            };
-            return h * bisect(1e-6, last, |part| self.between(after, h, part) > aim);
-        }
-        let value = self.value * weight;
-        h * (value - aim) / (value - after.value)
+        let rise = after.value - self.value;
+        let [Some(first), Some(last)] = [self.rate, after.rate] else {
+            let value = self.value * weight;
+            return h * (value - aim) / (value - after.value);
+        };
+        // The cubic without its value at the start: from there on, however soon, it may be at the aim
+        // and rise.
+        let (first, last) = (h * first, h * last);
+        let third = first + last - 2.0 * rise;
+        let second = rise - first - third;
+        let on_cubic = |part: f64| part * (first + part * (second + part * third));
+        h * bisect(0.0, 1.0, |part| on_cubic(part) > aim - self.value)
     }
 }
 

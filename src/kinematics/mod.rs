@@ -82,11 +82,11 @@ pub use constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, CouplingLaw, JointUnknownId, LawId,
     MarkerPose, ParameterCoefficients, ProfileId,
 };
-pub use continuation::{Blocked, Progress, Reason};
+pub use continuation::{Blocked, PathWatch, Progress, Reason, SubStep};
 pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Remedy, Verdict};
 pub use forces::{
-    EquationsOfMotion, ForceParts, ForceQuantity, ForceSensitivity, Forces, JointFriction,
-    KnownMotion, LiftOff, Reported,
+    EquationsOfMotion, ForceParts, ForceQuantity, ForceSensitivity, Forces, Friction, KnownMotion,
+    LiftOff, Reported,
 };
 pub use linear::PivotOrder;
 pub(crate) use linear::{DenseLu, Factors, Singular};

@@ -8,11 +8,10 @@ use super::analysis::{
 };
 use super::assembly::estimate::{Move, estimate, moves};
 use super::constraint::Constraint;
-use super::continuation::{Blocked, PathTracker, Progress, check_pose};
+use super::continuation::{Blocked, PathTracker, PathWatch, Progress, check_pose};
 use super::error::Error;
 use super::forces::{
-    self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, JointFriction, KnownMotion,
-    LiftOff,
+    self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, Friction, KnownMotion, LiftOff,
 };
 use super::origin::Origin;
 use super::path::{Curve, Path, Rates};
@@ -241,14 +240,22 @@ impl Solver {
     }
 
     /// Moves the mechanism along `path` as [`track`](Self::track) does, through stops, but not beyond the
-    /// ends of curves: for a motion that stops act on by their forces.
+    /// ends of curves, in sub-steps that a watch admits: for a motion that stops act on by their forces.
     ///
     /// # Errors
     ///
     /// As [`track`](Self::track).
-    pub fn track_past_stops(&mut self, path: &Path) -> Result<Progress, Blocked> {
-        self.tracker
-            .past_stops(|tracker| tracker.track(&mut self.compiled, &mut self.state, path, false))
+    pub fn track_past_stops(
+        &mut self,
+        path: &Path,
+        watch: Option<&mut dyn PathWatch>,
+    ) -> Result<Progress, Blocked> {
+        let Self {
+            compiled,
+            state,
+            tracker,
+        } = self;
+        tracker.past_stops(|tracker| tracker.track_watched(compiled, state, path, false, watch))
     }
 
     /// Moves the mechanism along `path` as [`track`](Self::track) does, and gives up early where it
@@ -353,6 +360,19 @@ impl Solver {
     #[must_use]
     pub fn coordinate(&self, relation: &dyn Constraint, rates: &Rates) -> Jet {
         self.state.measure(relation, rates)
+    }
+
+    /// Returns the value of a relation at the present pose. Allocates nothing.
+    #[must_use]
+    pub fn place(&self, relation: &dyn Constraint) -> f64 {
+        relation.value(&self.state.at)
+    }
+
+    /// Returns bounds of the rounding errors of [value, rate and acceleration](Self::coordinate) of a
+    /// relation. Allocates nothing.
+    #[must_use]
+    pub fn coordinate_roundings(&self, relation: &dyn Constraint, rates: &Rates) -> [f64; 3] {
+        self.state.measure_roundings(relation, rates)
     }
 
     /// Returns the relation along which a force acts that has this coordinate: of a joint with play its
@@ -501,13 +521,13 @@ impl Solver {
         Forces::new(&self.compiled)
     }
 
-    /// Makes the storage for the friction in joints.
+    /// Makes the storage for friction.
     #[must_use]
-    pub fn joint_friction(&self) -> JointFriction {
+    pub fn friction(&self) -> Friction {
         let mechanism = self.mechanism();
         let is_chosen = mechanism.outputs.indeterminate == Indeterminate::MinimumNorm;
         let open = !is_chosen && !self.compiled.redundant.now.is_empty();
-        JointFriction::new(mechanism, open)
+        Friction::new(mechanism, open)
     }
 
     /// Solves the forces at the present pose for a motion that [`solve_rates`](Self::solve_rates)

@@ -459,6 +459,30 @@ impl State {
         Jet::new(measure.value(&self.at), [velocity, acceleration])
     }
 
+    /// Returns bounds of the rounding errors of value, rate and acceleration of a measure at the pose: each
+    /// is a sum, such as ċ = Σ ∂c/∂q q̇, and its error is some roundings of the magnitudes in it, which may
+    /// cancel. A rate is that at the time of the pose, which is rounded too.
+    pub(super) fn measure_roundings(&self, measure: &dyn Constraint, rates: &Rates) -> [f64; 3] {
+        /// Roundings of a term: those of the bodies that it depends on, some ten operations each. Halved,
+        /// rates at rest of deep chains may count as motion. Doubled, motion twice as slow counts as rest.
+        const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+        let mut gradient = Gradient::new();
+        measure.gradient(&self.at, &mut gradient);
+        let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
+        let size = |vector: &[f64]| -> f64 {
+            let products = gradient.entries().map(|(k, partial)| partial * vector[k]);
+            products.map(f64::abs).sum()
+        };
+        let quadratic = measure.quadratic(&self.at, q_dot);
+        let acceleration = gradient.dot(q_ddot) + quadratic;
+        let sizes = [
+            size(&self.pose.q),
+            size(q_dot) + (acceleration * self.pose.time).abs(),
+            size(q_ddot) + quadratic.abs(),
+        ];
+        sizes.map(|size| ROUNDINGS * size)
+    }
+
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
     pub(super) fn marker(&self, marker: MarkerId, rates: &Rates) -> [Jet; 2] {
         let marker = self.at.marker(marker);

@@ -88,12 +88,6 @@ impl FrictionLaw {
         against * (0.0 - sign)
     }
 
-    /// Returns the direction in which a coordinate slides: zero where it rests.
-    #[must_use]
-    pub fn direction(rate: f64) -> f64 {
-        if rate == 0.0 { 0.0 } else { rate.signum() }
-    }
-
     /// Returns the part of the force that does not grow with the rate of the coordinate:
     /// C + (S − C) exp(−(ċ / v)²), with C of Coulomb, S of sticking and v of Stribeck.
     pub fn dry<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N) -> N {

@@ -11,6 +11,8 @@ pub enum Failure<C> {
     Hard(C),
     /// The step must end at this time or before, later than its start: an event lies there \[s\].
     Cut(f64),
+    /// What happens between its ends is not clear: the integrator tries a shorter step.
+    Unclear,
 }
 
 /// Reason for the refusal of a trial step.
@@ -29,6 +31,9 @@ pub enum Reason<C: Debug + Display> {
     /// The matrix of the stiff method is singular.
     #[error("the matrix of the stiff method is singular")]
     Singular,
+    /// An event may lie between the ends.
+    #[error("events follow each other too fast")]
+    Unclear,
 }
 
 /// A step that could not be made. The state stays at the last accepted step; the proposed step
@@ -132,6 +137,7 @@ impl<C: Debug + Display> From<Failure<C>> for Refusal<C> {
             Failure::Trial(cause) => Self::Retry(Reason::Failed(cause)),
             Failure::Hard(cause) => Self::Stop(cause),
             Failure::Cut(time) => Self::Cut(time),
+            Failure::Unclear => Self::Retry(Reason::Unclear),
         }
     }
 }

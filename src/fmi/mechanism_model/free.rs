@@ -31,7 +31,7 @@ impl Given for StepInputs<'_> {
                 position + tau * (velocity + 0.5 * tau * acceleration),
                 [velocity + tau * acceleration, acceleration],
             ),
-            Curve::Motion => unreachable!("a prescribed motion is no input"),
+            Curve::Motion | Curve::Polynomial(_) => unreachable!("an input has a parabola"),
         }
     }
 

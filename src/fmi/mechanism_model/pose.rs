@@ -305,7 +305,7 @@ impl MechanismModel {
                     jump,
                     ..
                 } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
-                Curve::Motion => false,
+                Curve::Motion | Curve::Polynomial(_) => false,
             });
         self.advance_forces(if jumped { 0.0 } else { blocked.s * h });
         if jumped {
@@ -427,7 +427,7 @@ impl MechanismModel {
         let followed = match trial {
             // Stops act on freedoms by their forces.
             true => self.solver.track_through_stops(&self.path),
-            false if self.free.is_some() => self.solver.track_past_stops(&self.path),
+            false if self.free.is_some() => self.solver.track_past_stops(&self.path, None),
             false => self.solver.track(&self.path),
         };
         self.set_driver_rates(start, h, 1.0);

@@ -233,18 +233,14 @@ fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unread
             coordinate,
             force,
             bounds,
-            rounding,
+            roundings,
             force_rounding,
+            is_dependent,
         } = at;
-        let reals = [
-            anchor,
-            &mut coordinate.value,
-            force,
-            rounding,
-            force_rounding,
-        ];
+        let reals = [anchor, &mut coordinate.value, force, force_rounding];
         let reals = reals.into_iter().chain(&mut coordinate.derivatives);
-        codec.each(reals.chain(bounds), Codec::real)?;
+        codec.each(reals.chain(bounds).chain(roundings), Codec::real)?;
+        codec.one_of(is_dependent, &[false, true])?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::kinematics::certificate::{LARGEST_JUMP, ParameterBounds, StepBounds};
 use crate::kinematics::constraint::moving_configuration::bend;
-use crate::kinematics::path::{Curve, Path, PathDrivers};
+use crate::kinematics::path::{Curve, Path, PathDrivers, polynomial};
 use crate::kinematics::state::State;
 use crate::kinematics::system::{Equation, System};
 use crate::mechanism::{DriverId, Interval, Jet3, Number, ParameterId};
@@ -46,6 +46,15 @@ pub(super) fn bound_drivers(
             Curve::Input { .. } => {
                 let second = drivers.ahead[index].second();
                 Some(0.125 * (end - start).powi(2) * second.abs())
+            }
+            Curve::Polynomial(coefficients) => {
+                // Taylor's formula from the middle, whose terms add up to a bound.
+                let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
+                let terms = (2..6).rev().fold(0.0, |sum, derivative| {
+                    let term = polynomial(coefficients, derivative, middle).abs();
+                    term + sum * half / (derivative - 1) as f64
+                });
+                Some(0.125 * (end - start).powi(2) * terms)
             }
             Curve::Motion => {
                 let driver = DriverId(index);

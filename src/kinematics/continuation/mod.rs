@@ -8,8 +8,10 @@
 mod driver_bounds;
 mod outcome;
 mod stops;
+mod sub_step;
 mod tracker;
 
 pub use outcome::{Blocked, Progress, Reason};
 pub(super) use stops::check_pose;
+pub use sub_step::{PathWatch, SubStep};
 pub(super) use tracker::{PathTracker, most_substeps};

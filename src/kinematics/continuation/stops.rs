@@ -13,10 +13,10 @@
 //! Gaps are known to rounding. A motion that goes beyond a limit by rounding, such as one that
 //! grazes it, goes on.
 
+use super::sub_step::SubStep;
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::Error;
-use crate::kinematics::plan::Watched;
-use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, LimitOwner};
+use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, LimitOwner, StopRelation};
 use crate::kinematics::state::State;
 use crate::kinematics::stop_limit::StopLimit;
 
@@ -234,7 +234,21 @@ impl StopWatch {
             if self.only_curves && is_stop {
                 continue;
             }
-            let deviation = deviation(compiled, state, stop, bounds);
+            let mut sub_step = SubStep {
+                compiled,
+                state,
+                bounds,
+                part: [start, end],
+            };
+            let StopRelation {
+                relation, columns, ..
+            } = &compiled.stops[stop];
+            let mechanism = compiled.system.mechanism();
+            let coordinate = match compiled.stops[stop].owner {
+                LimitOwner::Stop(stop) => Some(&mechanism.stops[stop].coordinate),
+                LimitOwner::Curve(..) => None,
+            };
+            let deviation = sub_step.deviation(&**relation, columns, coordinate);
             let scale = self.scale(compiled, state, stop);
             self.note_rounding(stop, h, deviation, scale);
             for is_max in [false, true] {
@@ -314,57 +328,6 @@ impl StopWatch {
         let value = self.limits_here[stop][usize::from(is_max)];
         compiled.stops[stop].describe(compiled.system.mechanism(), is_max, value)
     }
-}
-
-/// Bounds the deviation of a stop's coordinate from its chord over the sub-step; infinite without a
-/// bound.
-fn deviation(
-    compiled: &CompiledMechanism,
-    state: &State,
-    stop: usize,
-    bounds: &mut StepBounds,
-) -> f64 {
-    let relation = &compiled.stops[stop];
-    let watched = Watched {
-        relation: &*relation.relation,
-        columns: &relation.columns,
-        at: &state.at,
-        from: &state.pose.q,
-        pivots: &compiled.plan.pivots,
-    };
-    let deviation = if bounds.parameters.moving {
-        watched.deviation_while_moving(bounds, 0.0)
-    } else {
-        let smooth = watched.deviation(bounds);
-        smooth.or_else(|| Some(2.0 * swept(compiled, state, relation.owner, bounds)?))
-    };
-    deviation.filter(|d| !d.is_nan()).unwrap_or(f64::INFINITY)
-}
-
-/// Bounds the change of a distance over the sub-step, also where its points meet: by their ways. `None`
-/// for a place on a curve.
-fn swept(
-    compiled: &CompiledMechanism,
-    state: &State,
-    owner: LimitOwner,
-    bounds: &StepBounds,
-) -> Option<f64> {
-    let LimitOwner::Stop(stop) = owner else {
-        return None;
-    };
-    let coordinate = compiled.system.mechanism().stops[stop].coordinate;
-    let way = |column: usize| {
-        let chord = state.at.coordinate(column) - state.pose.q[column];
-        chord.abs() + bounds.deviation(column, &compiled.plan.pivots)
-    };
-    let ways = [coordinate.from, coordinate.to].map(|id| {
-        let marker = state.at.marker(id);
-        marker.body.map_or(0.0, |body| {
-            let k = 3 * body.index();
-            way(k) + way(k + 1) + marker.arm.norm() * way(k + 2)
-        })
-    });
-    Some(ways[0] + ways[1])
 }
 
 /// Bounds the deviation of a limit from its chord over the sub-step.

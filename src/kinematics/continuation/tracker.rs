@@ -12,6 +12,7 @@ use pace::{Pace, Verdict};
 use super::driver_bounds::bound_drivers;
 use super::outcome::{Blocked, Progress, Reason};
 use super::stops::StopWatch;
+use super::sub_step::{PathWatch, SubStep};
 use crate::kinematics::Error;
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::OpenJoint;
@@ -102,6 +103,23 @@ impl PathTracker {
         path: &Path,
         gives_up: bool,
     ) -> Result<Progress, Blocked> {
+        self.track_watched(compiled, state, path, gives_up, None)
+    }
+
+    /// Moves the mechanism as [`track`](Self::track) does, in sub-steps that a watch admits.
+    ///
+    /// # Errors
+    ///
+    /// As [`track`](Self::track).
+    pub(in crate::kinematics) fn track_watched(
+        &mut self,
+        compiled: &mut CompiledMechanism,
+        state: &mut State,
+        path: &Path,
+        gives_up: bool,
+        watch: Option<&mut dyn PathWatch>,
+    ) -> Result<Progress, Blocked> {
+        let watches_stops = !self.stops.is_empty() && !self.ignores_stops;
         let mut run = Run {
             compiled,
             state,
@@ -109,8 +127,10 @@ impl PathTracker {
             bounds: &mut self.bounds,
             crossed: &mut self.crossed,
             fruitless: &mut self.fruitless,
-            watches_stops: !self.stops.is_empty() && !self.ignores_stops,
+            is_watched: watches_stops || watch.is_some(),
+            watches_stops,
             stops: &mut self.stops,
+            watch: watch.map(|watch| watch as _),
             path,
             s: 0.0,
             length: 1.0,
@@ -143,8 +163,11 @@ struct Run<'a> {
     bounds: &'a mut StepBounds,
     crossed: &'a mut Vec<Arc<Crossing>>,
     fruitless: &'a mut FruitlessSearches,
+    /// Whether stops or another watch decide about sub-steps.
+    is_watched: bool,
     watches_stops: bool,
     stops: &'a mut StopWatch,
+    watch: Option<&'a mut dyn PathWatch>,
     path: &'a Path,
     /// The place on the path where the mechanism is.
     s: f64,
@@ -361,15 +384,15 @@ impl Run<'_> {
         // A motion given by a table is bounded between its points only.
         let point = self.path.next_point(self.s, &self.state.motions);
         loop {
-            let most = if self.watches_stops {
-                point.min(self.stops.most)
+            let most = if self.is_watched {
+                point.min(self.most_watched())
             } else {
                 point
             };
             let goal = self.goal(most);
             self.progress.substeps = self.progress.substeps.saturating_add(1);
             match self.try_step(goal.s) {
-                Ok(_) if self.watches_stops && !self.is_clear_of_stops(goal.s)? => {
+                Ok(_) if self.is_watched && !self.is_admitted(goal.s)? => {
                     self.return_to_pose();
                 }
                 Ok(correction) => {
@@ -418,20 +441,49 @@ impl Run<'_> {
         Ok(correction)
     }
 
-    /// Returns whether a certified sub-step is clear of all stops.
+    /// Returns the place on the path beyond which the next sub-step must not end.
+    // Inlined, it would be part of steps without stops.
+    #[inline(never)]
+    fn most_watched(&self) -> f64 {
+        let most = self
+            .watch
+            .as_ref()
+            .map_or(f64::INFINITY, |watch| watch.most());
+        most.min(if self.watches_stops {
+            self.stops.most
+        } else {
+            f64::INFINITY
+        })
+    }
+
+    /// Returns whether a certified sub-step is clear of all stops, and admitted by the watch.
     ///
     /// # Errors
     ///
     /// The stop that the pose is at, if the motion leads out.
     // Inlined, it would be part of steps without stops.
     #[inline(never)]
-    fn is_clear_of_stops(&mut self, end: f64) -> Result<bool, Reason> {
+    fn is_admitted(&mut self, end: f64) -> Result<bool, Reason> {
+        let part = [self.s, end];
+        if let Some(watch) = &mut self.watch {
+            let mut sub_step = SubStep {
+                compiled: self.compiled,
+                state: self.state,
+                bounds: self.bounds,
+                part,
+            };
+            if !watch.admits(&mut sub_step) {
+                return Ok(false);
+            }
+        }
+        if !self.watches_stops {
+            return Ok(true);
+        }
         let parameters = if self.drivers.parameters_move {
             &self.drivers.parameters
         } else {
             &self.state.pose.parameters
         };
-        let part = [self.s, end];
         let checked = self
             .stops
             .check(self.compiled, self.state, parameters, self.bounds, part);

@@ -26,14 +26,14 @@
 //! | `equations` | [`EquationsOfMotion`]: inertia and bias in the coordinates of the drivers |
 //! | `rounding` | the rounding error of efforts |
 //! | `lift_off` | [`LiftOff`]: contacts that begin to pull |
-//! | `joint_friction` | [`JointFriction`]: friction that grows with a reaction |
+//! | `friction` | [`Friction`]: along coordinates, and in joints, where it grows with a reaction |
 //! | `sensitivity` | [`ForceSensitivity`]: their derivatives along a direction |
 
 mod applied;
 mod equations;
+mod friction;
 mod indeterminate;
 mod inertial;
-mod joint_friction;
 mod lift_off;
 mod results;
 mod rounding;
@@ -44,8 +44,8 @@ mod wrench;
 
 pub use crate::mechanism::{ForceQuantity, Reported};
 pub use equations::EquationsOfMotion;
+pub use friction::Friction;
 pub(super) use indeterminate::indeterminate;
-pub use joint_friction::JointFriction;
 pub use lift_off::LiftOff;
 pub use sensitivity::ForceSensitivity;
 pub use solve::{ForceParts, Forces, KnownMotion};

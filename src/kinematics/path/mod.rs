@@ -46,9 +46,42 @@ pub enum Curve {
     },
     /// The driver's prescribed motion.
     Motion,
+    /// Σ c_k sᵏ, by its coefficients.
+    Polynomial([f64; 6]),
 }
 
 impl Curve {
+    /// Returns the polynomial of degree 5 through values and two derivatives by s at both ends.
+    #[must_use]
+    pub fn through(from: Jet, to: Jet) -> Self {
+        let [first, half] = [from.first(), 0.5 * from.second()];
+        // What is left of value and derivatives at the end.
+        let value = to.value - (from.value + first + half);
+        let slope = to.first() - (first + 2.0 * half);
+        let bend = to.second() - 2.0 * half;
+        Self::Polynomial([
+            from.value,
+            first,
+            half,
+            10.0 * value - 4.0 * slope + 0.5 * bend,
+            -15.0 * value + 7.0 * slope - bend,
+            6.0 * value - 3.0 * slope + 0.5 * bend,
+        ])
+    }
+
+    /// Returns the cubic with these values at 0, 1/3, 2/3 and 1.
+    #[must_use]
+    pub fn cubic([a, b, c, d]: [f64; 4]) -> Self {
+        Self::Polynomial([
+            a,
+            -5.5 * a + 9.0 * b - 4.5 * c + d,
+            9.0 * a - 22.5 * b + 18.0 * c - 4.5 * d,
+            -4.5 * a + 13.5 * b - 13.5 * c + 4.5 * d,
+            0.0,
+            0.0,
+        ])
+    }
+
     /// Returns a held input at `position`, reached straight from the value `now`.
     #[must_use]
     pub fn held(position: f64, now: f64) -> Self {
@@ -152,7 +185,20 @@ impl Path {
                     out.value = position + travel + (1.0 - s) * jump;
                     out.derivatives = [rate, h * h * acceleration];
                 }
+                Curve::Polynomial(coefficients) => {
+                    let on = |derivative| polynomial(&coefficients, derivative, s);
+                    *out = Jet::new(on(0), [on(1), on(2)]);
+                }
             }
         }
     }
+}
+
+/// Returns a derivative of Σ c_k sᵏ.
+pub(super) fn polynomial(coefficients: &[f64], derivative: usize, s: f64) -> f64 {
+    let terms = coefficients.iter().enumerate().skip(derivative).rev();
+    terms.fold(0.0, |sum, (k, coefficient)| {
+        let factor: usize = (k + 1 - derivative..=k).product();
+        sum * s + factor as f64 * coefficient
+    })
 }

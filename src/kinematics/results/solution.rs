@@ -5,12 +5,12 @@ use crate::kinematics::analysis::Direction;
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::kinematics::forces::{
-    ForceParts, ForceQuantity, ForceSensitivity, Forces, JointFriction, KnownMotion, LiftOff,
+    ForceParts, ForceQuantity, ForceSensitivity, Forces, Friction, KnownMotion, LiftOff,
 };
 use crate::kinematics::path::Rates;
 use crate::kinematics::solver::Solver;
 use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, FrictionLaw, Jet, Load, Mechanism, ParameterId, PassiveCause,
+    DerivedMeasure, DriverId, Dual, Jet, Load, Mechanism, ParameterId, PassiveCause,
 };
 
 /// The rates at the pose of a [`Solver`] and, where they are [sought](Self::seek_forces), the
@@ -61,18 +61,18 @@ pub struct Solution {
     parts: ForceParts,
     /// Whether each contact pulls.
     lifted: Vec<bool>,
-    /// Friction of a mechanism without freedoms, whose motion would tell the loads, in their order.
-    frictions: Vec<Friction>,
-    joint_friction: JointFriction,
+    /// Friction of a mechanism without freedoms, whose motion would tell the loads.
+    friction: Friction,
+    /// Where each of it acts, in its order.
+    rubbed: Vec<Rubbed>,
 }
 
-/// Friction along a coordinate that drivers move.
+/// Place of friction in a mechanism without freedoms.
 #[derive(Debug)]
-struct Friction {
+struct Rubbed {
     /// Index of its load.
     load: usize,
     relation: Box<dyn Constraint>,
-    law: Box<FrictionLaw>,
     /// Index of the joint, for friction in one.
     joint: Option<usize>,
 }
@@ -89,8 +89,8 @@ impl Solution {
             forces: None,
             parts: ForceParts::ALL,
             lifted: Vec::new(),
-            frictions: Vec::new(),
-            joint_friction: JointFriction::default(),
+            friction: Friction::default(),
+            rubbed: Vec::new(),
         }
     }
 
@@ -100,9 +100,9 @@ impl Solution {
         self.loads = vec![0.0; forces.loads()];
         self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
-        self.frictions = frictions(solver.mechanism());
-        if !self.frictions.is_empty() {
-            self.joint_friction = solver.joint_friction();
+        if !solver.mechanism().has_freedoms() {
+            self.friction = solver.friction();
+            self.rubbed = rubbed(solver.mechanism());
         }
         let outputs = &solver.mechanism().outputs;
         let mut measures = solver.mechanism().derived.iter();
@@ -171,25 +171,19 @@ impl Solution {
             driver_rates,
             loads,
             forces: Some(forces),
-            frictions,
-            joint_friction,
+            friction,
+            rubbed,
             ..
         } = self
         else {
             return Ok(());
         };
-        joint_friction.set_parameters(&solver.pose().parameters);
-        let mut place = 0;
-        for friction in &*frictions {
-            let rate = solver.coordinate(&*friction.relation, rates).first();
-            let sign = FrictionLaw::direction(rate);
-            if friction.joint.is_some() {
-                joint_friction.set_motion(place, rate, sign);
-                place += 1;
-            } else {
-                let value = |id: ParameterId| solver.pose().parameters[id.index()];
-                loads[friction.load] = friction.law.along(&value, 1.0, rate, sign);
-            }
+        friction.set_parameters(&solver.pose().parameters);
+        for (place, Rubbed { relation, .. }) in rubbed.iter().enumerate() {
+            let rate = solver.coordinate(&**relation, rates).first();
+            let [_, rounding, _] = solver.coordinate_roundings(&**relation, rates);
+            let rests = rate.abs() <= rounding;
+            friction.set_motion(place, rate, if rests { 0.0 } else { rate.signum() });
         }
         let mut solve = |loads: &[f64], forces: &mut Forces, parts| {
             let motion = KnownMotion {
@@ -199,20 +193,22 @@ impl Solution {
             };
             solver.solve_forces(motion, parts, forces)
         };
-        if joint_friction.is_empty() {
+        if friction.is_empty() {
             return solve(loads, forces, parts);
         }
         let parts = ForceParts {
-            reactions: true,
+            reactions: parts.reactions || rubbed.iter().any(|rubbed| rubbed.joint.is_some()),
             ..parts
         };
-        joint_friction.solve(|sizes, reactions| {
-            for ((load, _), size) in in_joints(frictions).zip(sizes) {
-                loads[load] = *size;
+        friction.solve(|sizes, reactions| {
+            for (Rubbed { load, .. }, size) in rubbed.iter().zip(sizes) {
+                loads[*load] = *size;
             }
             solve(loads, forces, parts)?;
-            for (reaction, (_, joint)) in reactions.iter_mut().zip(in_joints(frictions)) {
-                *reaction = forces.reaction(joint);
+            for (Rubbed { joint, .. }, reaction) in rubbed.iter().zip(reactions) {
+                if let Some(joint) = joint {
+                    *reaction = forces.reaction(*joint);
+                }
             }
             Ok(())
         })
@@ -265,7 +261,7 @@ impl Solution {
         direction: &Direction,
         loads: &[f64],
     ) -> Result<Option<ForceSensitivity>, Error> {
-        if !self.frictions.is_empty() {
+        if !self.friction.is_empty() {
             // Friction is that of the pose.
             self.solve_forces(solver, ForceParts::ALL)?;
         }
@@ -274,8 +270,8 @@ impl Solution {
             driver_rates,
             loads: inputs,
             forces: Some(forces),
-            frictions,
-            joint_friction,
+            friction,
+            rubbed,
             ..
         } = self
         else {
@@ -287,32 +283,21 @@ impl Solution {
             driver_rates,
             inputs,
         };
-        let mut of_joints = Vec::new();
-        if !frictions.is_empty() {
-            let along = solver.sensitivity(rates, driver_rates, direction)?;
-            for friction in &*frictions {
-                let rate = along.rate(&*friction.relation);
-                let sign = FrictionLaw::direction(rate.value);
+        if !friction.is_empty() {
+            let mut change = |solver: &mut Solver, loads: &mut [f64], stays: Option<&_>| {
+                let along = solver.sensitivity(rates, driver_rates, direction)?;
                 let value = |id: ParameterId| along.parameter_value(id);
-                loads[friction.load] = match friction.joint {
-                    Some(_) => {
-                        of_joints.push(rate);
-                        0.0
-                    }
-                    None => {
-                        let one = Dual::new(1.0, [0.0]);
-                        friction.law.along(&value, one, rate, sign).first()
-                    }
-                };
-            }
-        }
-        if joint_friction.slides() {
-            let stays = solver.force_sensitivity(motion, direction, &loads, forces)?;
-            let along = solver.sensitivity(rates, driver_rates, direction)?;
-            let value = |id: ParameterId| along.parameter_value(id);
-            let changes = joint_friction.changes(&value, &of_joints, &stays);
-            for ((load, _), change) in in_joints(frictions).zip(changes) {
-                loads[load] = *change;
+                let rates = rubbed.iter().map(|rubbed| along.rate(&*rubbed.relation));
+                let rates: Vec<Dual> = rates.collect();
+                let changes = friction.changes(&value, &rates, stays);
+                for (Rubbed { load, .. }, change) in rubbed.iter().zip(changes) {
+                    loads[*load] = *change;
+                }
+                Ok::<_, Error>(friction.slides_in_joints())
+            };
+            if change(solver, &mut loads, None)? {
+                let stays = solver.force_sensitivity(motion, direction, &loads, forces)?;
+                change(solver, &mut loads, Some(&stays))?;
             }
         }
         let changes = solver.force_sensitivity(motion, direction, &loads, forces)?;
@@ -344,34 +329,23 @@ impl Solution {
     }
 }
 
-/// Returns the loads of the friction in joints, each with the index of its joint.
-fn in_joints(frictions: &[Friction]) -> impl Iterator<Item = (usize, usize)> {
-    let all = frictions.iter();
-    all.filter_map(|friction| Some((friction.load, friction.joint?)))
-}
-
-/// Returns the friction of a mechanism without freedoms.
-fn frictions(mechanism: &Mechanism) -> Vec<Friction> {
-    if mechanism.has_freedoms() {
-        return Vec::new();
-    }
+/// Returns the places of the friction of a mechanism without freedoms.
+fn rubbed(mechanism: &Mechanism) -> Vec<Rubbed> {
     let loads = mechanism.force_inputs().len()..;
-    let passive = mechanism
-        .forces
-        .iter()
-        .filter_map(|force| match &force.load {
-            Load::Passive {
-                coordinate,
-                cause: PassiveCause::Friction(law),
-            } => Some((coordinate, law)),
-            _ => None,
-        });
-    let frictions = loads.zip(passive);
-    let frictions = frictions.map(|(load, (coordinate, law))| Friction {
-        load,
-        relation: of_coordinate(coordinate),
-        joint: law.bearing.as_ref().map(|bearing| bearing.joint),
-        law: law.clone(),
+    let forces = mechanism.forces.iter();
+    let frictions = forces.filter_map(|force| match &force.load {
+        Load::Passive {
+            coordinate,
+            cause: PassiveCause::Friction(law),
+        } => Some((coordinate, law)),
+        _ => None,
     });
-    frictions.collect()
+    let rubbed = loads
+        .zip(frictions)
+        .map(|(load, (coordinate, law))| Rubbed {
+            load,
+            relation: of_coordinate(coordinate),
+            joint: law.bearing.as_ref().map(|bearing| bearing.joint),
+        });
+    rubbed.collect()
 }

@@ -1,6 +1,8 @@
-//! Friction in joints: it grows with the reaction of the joint, and this depends on it.
+//! Friction along coordinates and in joints.
 //!
-//! The reactions are affine in the friction f of the joints that slide, R = A + B f, so that
+//! Along a coordinate it follows from the rate alone. In a joint it grows with the joint's reaction, and
+//! this depends on it: the reactions are affine in the friction f of the joints that slide,
+//! R = A + B f, so that
 //!
 //! > f_k = −s_k μ_k p_k(R_k) − d_k ċ_k, R_k = A_k + Σ B_kj f_j
 //!
@@ -12,18 +14,18 @@ use super::sensitivity::ForceSensitivity;
 use crate::kinematics::error::Error;
 use crate::kinematics::linear::{DenseLu, Factors};
 use crate::kinematics::state::SINGULAR_HERE;
-use crate::mechanism::{Bearing, Dual, FrictionLaw, Mechanism, Number, ParameterId};
+use crate::mechanism::{Dual, FrictionLaw, Mechanism, Number, ParameterId};
 
 /// Newton steps, far more than the nearly linear equations take.
 const MOST_STEPS: usize = 50;
 
-/// The friction in the joints of a mechanism.
+/// All friction of a mechanism that sticks or slides, in the order of the file: each at its place.
 #[derive(Debug, Default)]
-pub struct JointFriction {
+pub struct Friction {
     list: Vec<Pair>,
     /// f.
     forces: Vec<f64>,
-    /// R.
+    /// R, of those in joints.
     reactions: Vec<[f64; 3]>,
     /// A.
     unloaded: Vec<[f64; 3]>,
@@ -38,27 +40,34 @@ pub struct JointFriction {
     is_frozen: bool,
 }
 
-/// Friction in one joint, a lower pair.
+/// Friction between two bodies.
 #[derive(Debug)]
 struct Pair {
     name: String,
-    bearing: Bearing,
-    law: FrictionLaw,
-    /// Rate of the joint's coordinate, and the direction in which it slides: zero where it rests.
+    law: Box<FrictionLaw>,
+    /// Rate of its coordinate, and the direction in which it slides: zero where it rests.
     rate: f64,
     sign: f64,
 }
 
 impl Pair {
-    /// Returns the force for a reaction.
+    /// Returns the force for a reaction of the joint, if it is in one.
     fn along<N: Number>(
         &self,
         parameter: &impl Fn(ParameterId) -> N,
         reaction: [N; 3],
         rate: N,
     ) -> N {
-        let pressure = self.bearing.pressure(parameter, reaction);
+        let pressure = match &self.law.bearing {
+            Some(bearing) => bearing.pressure(parameter, reaction),
+            None => N::constant(1.0),
+        };
         self.law.along(parameter, pressure, rate, self.sign)
+    }
+
+    /// Returns whether it slides in a joint.
+    fn slides_in_joint(&self) -> bool {
+        self.sign != 0.0 && self.law.bearing.is_some()
     }
 
     /// Returns the derivative of the force as the reaction changes.
@@ -68,6 +77,9 @@ impl Pair {
         reaction: [f64; 3],
         by: [f64; 3],
     ) -> f64 {
+        if self.law.bearing.is_none() {
+            return 0.0;
+        }
         let parameter = |id: ParameterId| Dual::constant(value(id));
         let reaction = [0, 1, 2].map(|k| Dual::new(reaction[k], [by[k]]));
         let change = self
@@ -86,15 +98,13 @@ impl Pair {
     }
 }
 
-impl JointFriction {
+impl Friction {
     /// Makes the storage; redundant constraints leave the reactions `open`.
     pub(in crate::kinematics) fn new(mechanism: &Mechanism, open: bool) -> Self {
         let list = mechanism.forces.iter().filter_map(|force| {
-            let law = force.load.friction()?;
             Some(Pair {
                 name: force.name.clone(),
-                bearing: law.bearing.clone()?,
-                law: law.clone(),
+                law: Box::new(force.load.friction()?.clone()),
                 rate: 0.0,
                 sign: 0.0,
             })
@@ -121,12 +131,19 @@ impl JointFriction {
         self.list.is_empty()
     }
 
-    /// Has friction follow from the reactions of the last solution, which stay, or again from its own.
+    /// Returns the places of the friction in joints, each with the index of its joint.
+    pub fn joints(&self) -> impl Iterator<Item = (usize, usize)> {
+        let all = self.list.iter().enumerate();
+        all.filter_map(|(place, own)| Some((place, own.law.bearing.as_ref()?.joint)))
+    }
+
+    /// Has friction in joints follow from the reactions of the last solution, which stay, or again from
+    /// its own.
     pub fn freeze(&mut self, freeze: bool) {
         self.is_frozen = freeze;
     }
 
-    /// Sets the parameters, before the motion of the joints.
+    /// Sets the parameters, before the motion.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         if !self.list.is_empty() {
             self.parameters.copy_from_slice(parameters);
@@ -135,27 +152,30 @@ impl JointFriction {
 
     /// Returns whether a joint with friction slides.
     #[must_use]
-    pub fn slides(&self) -> bool {
-        self.list.iter().any(|own| own.sign != 0.0)
+    pub fn slides_in_joints(&self) -> bool {
+        self.list.iter().any(Pair::slides_in_joint)
     }
 
-    /// Sets the motion of the joint at a place: the rate of its coordinate, and the direction in which it
-    /// slides, 1 or −1, or zero where it rests.
+    /// Sets the motion at a place: the rate of the coordinate, and the direction in which it slides, 1
+    /// or −1, or zero where it rests.
     pub fn set_motion(&mut self, place: usize, rate: f64, sign: f64) {
         let own = &mut self.list[place];
         (own.rate, own.sign) = (rate, sign);
     }
 
-    /// Returns the largest friction of the joint at a place while it sticks, for the reactions of the
-    /// last solution \[N or N m\].
+    /// Returns the largest friction at a place while it sticks, in a joint for the reactions of the last
+    /// solution \[N or N m\].
     #[must_use]
     pub fn limit(&self, place: usize) -> f64 {
         let own = &self.list[place];
         let value = |id: ParameterId| self.parameters[id.index()];
-        own.law.sticking(&value) * own.bearing.pressure(&value, self.reactions[place])
+        let pressure = own.law.bearing.as_ref().map_or(1.0, |bearing| {
+            bearing.pressure(&value, self.reactions[place])
+        });
+        own.law.sticking(&value) * pressure
     }
 
-    /// Solves the friction of all joints that slide. `respond` solves the reactions of all joints for
+    /// Solves all friction that slides. `respond` solves the reactions of [joints](Self::joints) for
     /// friction of these sizes, its last call for the solution. Allocates nothing unless it fails.
     ///
     /// # Errors
@@ -165,7 +185,8 @@ impl JointFriction {
         &mut self,
         mut respond: impl FnMut(&[f64], &mut [[f64; 3]]) -> Result<(), E>,
     ) -> Result<(), E> {
-        if let (true, Some(own)) = (self.is_open, self.list.first()) {
+        let in_joint = |own: &&Pair| own.law.bearing.is_some();
+        if let (true, Some(own)) = (self.is_open, self.list.iter().find(in_joint)) {
             let fault = own.fault(
                 "follows from reactions that redundant constraints leave indeterminate: \
                  `indeterminate = \"minimum_norm\"` in `[outputs]` chooses some",
@@ -173,24 +194,26 @@ impl JointFriction {
             return Err(fault.into());
         }
         let count = self.list.len();
-        if self.is_frozen {
-            let value = |id: ParameterId| self.parameters[id.index()];
-            let frozen = self.list.iter().zip(&self.reactions);
-            for (force, (own, reaction)) in self.forces.iter_mut().zip(frozen) {
-                *force = own.along(&value, *reaction, own.rate);
-            }
-            return respond(&self.forces, &mut self.unloaded);
+        let value = |id: ParameterId| self.parameters[id.index()];
+        let reactions = self.list.iter().zip(&self.reactions);
+        for (force, (own, reaction)) in self.forces.iter_mut().zip(reactions) {
+            *force = match own.law.bearing {
+                Some(_) if !self.is_frozen => 0.0,
+                _ => own.along(&value, *reaction, own.rate),
+            };
         }
-        self.forces.fill(0.0);
         respond(&self.forces, &mut self.unloaded)?;
+        if self.is_frozen {
+            return Ok(());
+        }
         self.reactions.copy_from_slice(&self.unloaded);
-        if !self.slides() {
+        if !self.slides_in_joints() {
             return Ok(());
         }
         self.columns.fill([0.0; 3]);
         for column in 0..count {
             let own = &self.list[column];
-            if own.sign == 0.0 {
+            if !own.slides_in_joint() {
                 continue;
             }
             // As large as friction is, so that rounding stays that of the reactions.
@@ -206,7 +229,7 @@ impl JointFriction {
             }
         }
         if !self.is_contraction() || !self.find() {
-            let mut sliding = self.list.iter().filter(|own| own.sign != 0.0);
+            let mut sliding = self.list.iter().filter(|own| own.slides_in_joint());
             let fault = sliding.next().map_or(SINGULAR_HERE, |own| {
                 own.fault("jams here: the reaction that it makes has it grow without end")
             });
@@ -227,10 +250,11 @@ impl JointFriction {
         factors.clear();
         for (row, own) in self.list.iter().enumerate() {
             factors.add(row, row, 1.0);
+            let Some(bearing) = &own.law.bearing else {
+                continue;
+            };
             for column in 0..count {
-                let pressure = own
-                    .bearing
-                    .pressure(&value, self.columns[row * count + column]);
+                let pressure = bearing.pressure(&value, self.columns[row * count + column]);
                 let coefficient = own.law.dry(&value, own.rate) * own.sign.abs();
                 factors.add(row, column, -coefficient * pressure);
             }
@@ -292,27 +316,30 @@ impl JointFriction {
         false
     }
 
-    /// Returns the changes of the friction of all joints along a direction, from the changes of the
-    /// parameters, of the rates of the joints, and of the forces where friction stays as it is. Belongs
-    /// to the last solution.
+    /// Returns the changes of all friction along a direction, from the changes of the parameters and of the
+    /// rates of the coordinates, and of that in joints from those of the forces where it stays as it is:
+    /// without these it does. Belongs to the last solution.
     pub fn changes(
         &mut self,
         parameter: &impl Fn(ParameterId) -> Dual,
         rates: &[Dual],
-        forces: &ForceSensitivity,
+        forces: Option<&ForceSensitivity>,
     ) -> &[f64] {
-        self.side.fill(0.0);
-        if !self.slides() {
-            return &self.side;
+        for (row, own) in self.list.iter().enumerate() {
+            let by = match (&own.law.bearing, forces) {
+                _ if own.sign == 0.0 => None,
+                (None, _) => Some([0.0; 3]),
+                (Some(bearing), forces) => forces.map(|forces| forces.reaction(bearing.joint)),
+            };
+            self.side[row] = by.map_or(0.0, |by| {
+                let reaction = [0, 1, 2].map(|k| Dual::new(self.reactions[row][k], [by[k]]));
+                own.along(parameter, reaction, rates[row]).first()
+            });
         }
-        let sliding = self.list.iter().enumerate();
-        for (row, own) in sliding.filter(|(_, own)| own.sign != 0.0) {
-            let [is, by] = [self.reactions[row], forces.reaction(own.bearing.joint)];
-            let reaction = [0, 1, 2].map(|k| Dual::new(is[k], [by[k]]));
-            self.side[row] = own.along(parameter, reaction, rates[row]).first();
+        if forces.is_some() && self.slides_in_joints() {
+            let factors = self.factors.as_mut().expect("there is friction");
+            factors.solve(&mut self.side);
         }
-        let factors = self.factors.as_mut().expect("there is friction");
-        factors.solve(&mut self.side);
         &self.side
     }
 }

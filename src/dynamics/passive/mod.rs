@@ -1,25 +1,39 @@
-//! Forces that follow from the motion: those of rigid stops and of friction.
+//! Forces that follow from the motion: those of stops, of joints with play and of friction.
 //!
 //! Each acts along a coordinate c. While its [`Mode`] lasts the motion is smooth: a stop that nothing
 //! touches exerts nothing, friction that slides exerts what its law says, and a stop that is touched and
 //! friction that sticks hold their coordinate, c̈ = 0, by the force that this takes.
+//!
+//! | file | cause |
+//! |---|---|
+//! | `contact` | a rigid stop, the parts of a joint with play |
+//! | `elastic` | an elastic stop |
+//! | `friction` | friction along a coordinate or in a joint |
 
-use std::f64::consts::TAU;
+mod contact;
+mod elastic;
+mod friction;
+
+use std::fmt::Debug;
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
+use super::event::EventKind;
 use super::triangular::{ascend, descend, factorise};
+use super::watch::{FUNCTIONS, Function};
+use crate::kinematics::constraint::{Constraint, Incidence};
+use crate::kinematics::{EquationsOfMotion, ForceSensitivity, Friction, Sensitivity, Solver};
+use crate::mechanism::{Coordinate, DriverId, Dual, Jet, Load, Order, ParameterId, PassiveCause};
+use contact::Contact;
+use friction::Rubbing;
 
-use crate::kinematics::constraint::Constraint;
-use crate::kinematics::{EquationsOfMotion, ForceSensitivity, JointFriction, Sensitivity, Solver};
-use crate::mechanism::{
-    DriverId, Dual, ElasticStop, FrictionLaw, Jet, Load, Order, ParameterId, PassiveCause,
-};
-
-/// Gap and speed up to which a coordinate is at a stop and at rest, in radians or sizes of the
-/// mechanism, and those per second: some hundred roundings.
+/// Least gap, speed and acceleration that are rounding, in radians or sizes of the mechanism: some
+/// hundred roundings.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+/// A speed, or an acceleration, of so many roundings may be rest: 1e-8 radians or sizes of the mechanism
+/// per second. The instant of an event is not known much better.
+const SLOW: f64 = 1e6;
 
 /// The state of a passive force while the motion is smooth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,10 +89,13 @@ pub struct Passive {
     /// Least and largest value of a stop \[m or rad\], infinite without one; the bounds of friction
     /// that sticks \[N or N m\].
     pub bounds: [f64; 2],
-    /// Gap, or speed, that is rounding \[m or rad, or those per second\].
-    pub rounding: f64,
+    /// Gap, speed and acceleration that are rounding \[m or rad, and those per second\].
+    pub roundings: [f64; 3],
     /// Force of an elastic stop that is rounding: that of its spring in such a gap \[N or N m\].
     pub force_rounding: f64,
+    /// Whether others hold the coordinate already, or drivers alone move it: its own force is zero while
+    /// it is held.
+    pub is_dependent: bool,
 }
 
 impl Passive {
@@ -89,32 +106,81 @@ impl Passive {
         },
         force: 0.0,
         bounds: [f64::NEG_INFINITY, f64::INFINITY],
-        rounding: 0.0,
+        roundings: [0.0; 3],
         force_rounding: 0.0,
+        is_dependent: false,
     };
 
-    /// Returns the mode of an elastic stop.
-    pub(super) fn elastic_mode(&self) -> Mode {
-        let [value, rate] = [self.coordinate.value, self.coordinate.first()];
-        let [least, most] = self.bounds;
-        // At a limit it is touched if the coordinate goes beyond.
-        let is_beyond = |beyond: f64, rate: f64| {
-            beyond > self.rounding || beyond.abs() <= self.rounding && rate > 0.0
-        };
-        let touched = if is_beyond(least - value, -rate) {
-            Mode::AtMin
-        } else if is_beyond(value - most, rate) {
-            Mode::AtMax
-        } else {
-            return Mode::Free;
-        };
-        let is_inside = (least..=most).contains(&value);
-        match is_inside || touched.sign() * self.force > 0.0 {
-            true => touched,
-            false if touched == Mode::AtMin => Mode::LooseAtMin,
-            false => Mode::LooseAtMax,
-        }
+    /// Returns the gap that is rounding \[m or rad\].
+    pub(super) fn gap_rounding(&self) -> f64 {
+        self.roundings[0]
     }
+
+    /// Returns the speed that is rounding \[m/s or rad/s\].
+    pub(super) fn speed_rounding(&self) -> f64 {
+        self.roundings[1]
+    }
+
+    /// Returns the speed up to which the coordinate may rest \[m/s or rad/s\], or the acceleration up to
+    /// which its rate may stay.
+    pub(super) fn slow(&self, order: Order) -> f64 {
+        SLOW * self.roundings[order as usize]
+    }
+}
+
+/// Cause of a passive force. A contact that nothing touches and friction that is not decided yet have the
+/// mode [`Mode::Free`].
+pub(super) trait Cause: Debug + Send + Sync {
+    /// Reads the limits of its coordinate at the solver's pose, and the force if its law says it.
+    fn read(&self, solver: &Solver, at: &mut Passive);
+
+    /// Returns whether its force is a law of the coordinate, so that it is no load.
+    fn has_law(&self) -> bool {
+        false
+    }
+
+    /// Returns whether it holds its coordinate in a mode.
+    fn holds(&self, mode: Mode) -> bool;
+
+    /// Returns its mode at a point at which nothing holds, before that is chosen.
+    fn released(&self, at: &Passive) -> Mode;
+
+    /// Returns the sides on which a contact is touched.
+    fn touched(&self, _: &Passive) -> [Option<Mode>; 2] {
+        [None; 2]
+    }
+
+    /// Returns its place among all friction.
+    fn friction(&self) -> Option<usize> {
+        None
+    }
+
+    /// Returns the part of the velocity with which a contact bounces.
+    fn restitution(&self, _: &Solver) -> f64 {
+        0.0
+    }
+
+    /// Returns a function of the motion that is positive while the mode lasts; `None` if that cannot end
+    /// the mode. Each force has [`FUNCTIONS`](super::watch::FUNCTIONS) of them.
+    fn function(&self, mode: Mode, at: &Passive, side: usize) -> Option<Function>;
+
+    /// Returns whether the force, or the acceleration of the coordinate, is one that belongs to the mode.
+    fn agrees(&self, mode: Mode, at: &Passive) -> bool;
+
+    /// Returns the event of a change between two modes.
+    fn event(&self, before: Mode, after: Mode, at: &Passive) -> Option<EventKind>;
+}
+
+/// One passive force.
+#[derive(Debug)]
+pub(super) struct PassiveForce {
+    /// Index of the force in the mechanism.
+    pub(super) index: usize,
+    pub(super) relation: Arc<dyn Constraint>,
+    /// The unknowns in the relation, each once.
+    pub(super) columns: Vec<usize>,
+    pub(super) coordinate: Coordinate,
+    pub(super) cause: Box<dyn Cause>,
 }
 
 /// The passive forces of a mechanism.
@@ -124,8 +190,6 @@ pub(super) struct PassiveForces {
     pub(super) list: Vec<PassiveForce>,
     loads: usize,
     pub(super) modes: Vec<Mode>,
-    /// Whether drivers alone move the coordinate of friction.
-    pub(super) is_driven: Vec<bool>,
     /// The values at which coordinates are held.
     pub(super) anchors: Vec<f64>,
     /// ∂c/∂u: a row per force, a column per driver.
@@ -140,79 +204,63 @@ pub(super) struct PassiveForces {
     forces: Vec<f64>,
     /// Accelerations of the coordinates where no driver accelerates.
     coasting: Vec<f64>,
-    pub(super) joint_friction: JointFriction,
-    /// Friction in joints, in their order there: its index here, and that of the joint.
-    pub(super) bearings: Vec<(usize, usize)>,
-}
-
-/// One passive force.
-#[derive(Debug)]
-pub(super) struct PassiveForce {
-    /// Index of the force in the mechanism.
-    pub(super) index: usize,
-    relation: Arc<dyn Constraint>,
-    is_angle: bool,
-    pub(super) cause: Cause,
-}
-
-/// Cause of a passive force.
-#[derive(Clone, Debug)]
-pub(super) enum Cause {
-    /// One without a law.
-    Lawless(PassiveCause),
-    /// An elastic stop: its force has a law, which changes where it is touched.
-    Elastic(ElasticStop),
-}
-
-impl Cause {
-    /// Returns whether it is a contact that holds its coordinate at a limit.
-    pub(super) fn is_contact(&self) -> bool {
-        matches!(self, Self::Lawless(cause) if cause.is_contact())
-    }
-
-    /// Returns the law of friction.
-    pub(super) fn friction(&self) -> Option<&FrictionLaw> {
-        match self {
-            Self::Lawless(PassiveCause::Friction(law)) => Some(law),
-            _ => None,
-        }
-    }
+    pub(super) friction: Friction,
+    /// The forces that are friction, in its order, each with its joint if it is in one.
+    pub(super) rubbing: Vec<(usize, Option<usize>)>,
 }
 
 impl PassiveForces {
     pub(super) fn new(solver: &Solver, freedoms: usize) -> Self {
         let mechanism = solver.mechanism();
+        let mut frictions = 0..;
         let forces = mechanism.forces.iter().enumerate();
         let all = forces.filter_map(|(index, force)| {
-            let (coordinate, cause) = match &force.load {
-                Load::Passive { coordinate, cause } => (coordinate, Cause::Lawless(cause.clone())),
+            let (coordinate, cause): (_, Box<dyn Cause>) = match &force.load {
+                Load::Passive { coordinate, cause } => match cause {
+                    PassiveCause::Friction(_) => (coordinate, Box::new(Rubbing(frictions.next()?))),
+                    cause => {
+                        let is_angle = coordinate.kind.is_angle();
+                        let cause = cause.clone();
+                        (coordinate, Box::new(Contact { cause, is_angle }))
+                    }
+                },
                 Load::Coordinate { coordinate, law } => {
                     let stop = law.as_ref().and_then(|law| law.stop.clone());
-                    (coordinate, Cause::Elastic(*stop?))
+                    (coordinate, stop?)
                 }
                 Load::Marker { .. } => return None,
             };
+            let relation = solver.relation_of(&force.load, coordinate);
+            let mut incidence = Incidence::default();
+            relation.incidence(mechanism, &mut incidence);
+            let mut columns = incidence.unknowns;
+            columns.sort_unstable();
+            columns.dedup();
             Some(PassiveForce {
                 index,
-                relation: solver.relation_of(&force.load, coordinate),
-                is_angle: coordinate.kind.is_angle(),
+                relation,
+                columns,
+                coordinate: *coordinate,
                 cause,
             })
         });
-        let (mut list, elastic): (Vec<_>, Vec<_>) =
-            all.partition(|passive| !matches!(passive.cause, Cause::Elastic(_)));
+        let (mut list, elastic): (Vec<_>, Vec<_>) = all.partition(|own| !own.cause.has_law());
         let loads = list.len();
         list.extend(elastic);
         let (count, drivers) = (list.len(), mechanism.drivers.len());
-        let bearings = list.iter().enumerate().filter_map(|(k, passive)| {
-            Some((k, passive.cause.friction()?.bearing.as_ref()?.joint))
-        });
+        let friction = solver.friction();
+        let mut rubbing: Vec<_> = list.iter().enumerate().collect();
+        rubbing.retain(|(_, own)| own.cause.friction().is_some());
+        let mut rubbing: Vec<(usize, Option<usize>)> =
+            rubbing.into_iter().map(|(k, _)| (k, None)).collect();
+        for (place, joint) in friction.joints() {
+            rubbing[place].1 = Some(joint);
+        }
         Self {
             coasting: vec![0.0; count],
-            joint_friction: solver.joint_friction(),
-            bearings: bearings.collect(),
+            friction,
+            rubbing,
             modes: vec![Mode::Free; count],
-            is_driven: vec![false; count],
             anchors: vec![0.0; count],
             rows: DMatrix::zeros(count, drivers),
             holding: Vec::with_capacity(count),
@@ -223,7 +271,6 @@ impl PassiveForces {
             list,
         }
     }
-
     /// Forgets what is touched and what sticks.
     pub(super) fn reset(&mut self) {
         self.modes.fill(Mode::Free);
@@ -260,25 +307,32 @@ impl PassiveForces {
 
     /// Returns whether a coordinate is held.
     pub(super) fn is_held(&self, force: usize) -> bool {
-        match self.modes[force] {
-            Mode::AtMin | Mode::AtMax => self.list[force].cause.is_contact(),
-            mode => mode == Mode::Sticking,
-        }
+        self.list[force].cause.holds(self.modes[force])
     }
 
-    /// Reads coordinates and their partial derivatives at the solver's pose, and adds the friction that
-    /// slides, but in joints, to the equations of motion, which are those of the pose.
+    /// Returns a function of a passive force at a point; `None` if it cannot end the mode.
+    pub(super) fn function(&self, force: usize, at: &Passive, side: usize) -> Option<Function> {
+        self.list[force].cause.function(self.modes[force], at, side)
+    }
+
+    /// Returns whether there are gaps at a point.
+    pub(super) fn has_gaps(&self, at: &[Passive]) -> bool {
+        let all = at.iter().enumerate();
+        let mut functions = all.flat_map(|(force, at)| {
+            (0..FUNCTIONS).filter_map(move |side| self.function(force, at, side))
+        });
+        functions.any(|function| function.gap.is_some())
+    }
+
+    /// Reads coordinates and their partial derivatives at the solver's pose, where the equations of motion
+    /// are evaluated. Friction is still to be [rubbed](Self::rub).
     pub(super) fn begin(
         &mut self,
         solver: &Solver,
-        freedoms: &[DriverId],
-        motion: &mut EquationsOfMotion,
+        motion: &EquationsOfMotion,
         point: &mut [Passive],
     ) {
-        let parameters = &solver.pose().parameters;
-        let value = |id: ParameterId| parameters[id.index()];
-        self.joint_friction.set_parameters(parameters);
-        let mut place = 0;
+        self.friction.set_parameters(&solver.pose().parameters);
         for (k, (passive, to)) in self.list.iter().zip(point).enumerate() {
             let relation = &*passive.relation;
             to.coordinate = solver.coordinate(relation, motion.coasting());
@@ -287,58 +341,27 @@ impl PassiveForces {
                 let unit = motion.unit(DriverId(driver));
                 self.rows[(k, driver)] = solver.coordinate(relation, unit).first();
             }
-            if let Cause::Lawless(PassiveCause::Play(joint)) = passive.cause {
-                to.bounds = solver.limits_of_play(joint);
-                if passive.is_angle {
-                    // The bodies' whole turns are no play.
-                    let middle = 0.5 * (to.bounds[0] + to.bounds[1]);
-                    let turns = ((to.coordinate.value - middle) / TAU).round();
-                    to.coordinate.value -= TAU * turns;
-                }
-            }
-            let scale = if passive.is_angle { 1.0 } else { solver.size() };
-            to.rounding = ROUNDINGS * scale.max(to.coordinate.value.abs());
+            let is_angle = passive.coordinate.kind.is_angle();
+            let least = ROUNDINGS * if is_angle { 1.0 } else { solver.size() };
+            let own = solver.coordinate_roundings(relation, motion.coasting());
+            to.roundings = own.map(|rounding| rounding.max(least));
             to.force = 0.0;
-            let rate = to.coordinate.first();
-            match &passive.cause {
-                Cause::Lawless(PassiveCause::Stop(stop)) => {
-                    to.bounds = solver.mechanism().stops[*stop].limits(parameters);
-                }
-                Cause::Lawless(PassiveCause::Play(_)) => {}
-                Cause::Lawless(PassiveCause::Friction(law)) => {
-                    let limit = law.sticking(&value);
-                    to.bounds = [-limit, limit];
-                    self.is_driven[k] = freedoms.iter().all(|id| self.rows[(k, id.index())] == 0.0);
-                    let sign = self.sliding(k, rate);
-                    if law.bearing.is_some() {
-                        self.joint_friction.set_motion(place, rate, sign);
-                        place += 1;
-                    } else if sign != 0.0 {
-                        to.force = law.along(&value, 1.0, rate, sign);
-                        motion.exert(self.rows.row(k).iter().copied(), to.force, rate);
-                    }
-                }
-                Cause::Elastic(stop) => {
-                    to.bounds = stop.limits(parameters);
-                    let push = stop.push(&value, [to.coordinate.value, rate]);
-                    to.force = push.map_or(0.0, |(push, sign)| push * sign);
-                    to.force_rounding = stop.stiffness.value(parameters) * to.rounding;
-                }
+            to.is_dependent = false;
+            passive.cause.read(solver, to);
+            if let Some(place) = passive.cause.friction() {
+                let sign = self.modes[k].sign();
+                self.friction.set_motion(place, to.coordinate.first(), sign);
             }
-        }
-    }
-
-    /// Returns the direction in which the coordinate of friction slides at this rate: one that is driven, as
-    /// the drivers have it.
-    fn sliding(&self, force: usize, rate: f64) -> f64 {
-        match self.is_driven[force] {
-            true => FrictionLaw::direction(rate),
-            false => self.modes[force].sign(),
         }
     }
 
     /// Prepares the forces that hold, for L of J = L Lᵀ.
-    pub(super) fn prepare(&mut self, freedoms: &[DriverId], lower: &DMatrix<f64>) {
+    pub(super) fn prepare(
+        &mut self,
+        freedoms: &[DriverId],
+        lower: &DMatrix<f64>,
+        at: &mut [Passive],
+    ) {
         self.holding.clear();
         for k in 0..self.list.len() {
             if self.is_held(k) {
@@ -357,11 +380,14 @@ impl PassiveForces {
             }
         }
         factorise(&mut self.factor, count);
+        for (column, &k) in self.holding.iter().enumerate() {
+            at[k].is_dependent = self.factor[(column, column)].is_infinite();
+        }
     }
 
-    /// Has the friction of the joints that slide act with these sizes.
-    pub(super) fn slide(&self, sizes: &[f64], at: &mut [Passive], motion: &mut EquationsOfMotion) {
-        for (&(k, _), size) in self.bearings.iter().zip(sizes) {
+    /// Has the friction that slides act with these sizes, in its order.
+    pub(super) fn rub(&self, sizes: &[f64], at: &mut [Passive], motion: &mut EquationsOfMotion) {
+        for (&(k, _), size) in self.rubbing.iter().zip(sizes) {
             if !self.is_held(k) {
                 let at = &mut at[k];
                 let partials = self.rows.row(k).into_iter().copied();
@@ -371,10 +397,10 @@ impl PassiveForces {
         }
     }
 
-    /// Writes the bounds of the friction in joints, for their reactions.
+    /// Writes the bounds of the friction that sticks, in joints for their reactions.
     pub(super) fn bound(&self, at: &mut [Passive]) {
-        for (place, &(k, _)) in self.bearings.iter().enumerate() {
-            let limit = self.joint_friction.limit(place);
+        for (place, &(k, _)) in self.rubbing.iter().enumerate() {
+            let limit = self.friction.limit(place);
             at[k].bounds = [-limit, limit];
         }
     }
@@ -392,8 +418,8 @@ impl PassiveForces {
         }
     }
 
-    /// Adds changes of the freedoms' accelerations to those of coordinates; those that are held have
-    /// none.
+    /// Adds changes of the freedoms' accelerations to those of coordinates; those that are held by their
+    /// own force have none.
     pub(super) fn accelerate_freedoms(
         &self,
         at: &mut [Passive],
@@ -402,7 +428,7 @@ impl PassiveForces {
     ) {
         for (k, at) in at.iter_mut().enumerate() {
             let second = &mut at.coordinate.derivatives[1];
-            if self.is_held(k) {
+            if self.is_held(k) && !at.is_dependent {
                 *second = 0.0;
                 continue;
             }
@@ -456,38 +482,31 @@ impl PassiveForces {
         }
     }
 
-    /// Returns the changes of all coordinates along a direction, and writes those of forces that slide,
-    /// but in joints.
-    pub(super) fn changes(&self, sensitivity: &Sensitivity<'_>, changes: &mut [f64]) -> Vec<Jet> {
-        let parameter = |id: ParameterId| sensitivity.parameter_value(id);
-        let passive = self.list.iter().enumerate().zip(changes);
-        let coordinates = passive.map(|((k, passive), change)| {
-            let rate = sensitivity.rate(&*passive.relation);
-            let sign = self.sliding(k, rate.value);
-            *change = match passive.cause.friction() {
-                Some(law) if sign != 0.0 && law.bearing.is_none() => {
-                    let one = Dual::new(1.0, [0.0]);
-                    law.along(&parameter, one, rate, sign).first()
-                }
-                _ => 0.0,
-            };
-            sensitivity.coordinate(&*passive.relation)
-        });
-        coordinates.collect()
-    }
-
-    /// Returns the changes of the friction in joints along a direction, from those of the forces where
-    /// this friction stays as it is.
-    pub(super) fn joint_changes(
+    /// Returns the changes of all coordinates along a direction, and writes those of friction, that in
+    /// joints from those of the forces where it stays as it is: without these it does.
+    pub(super) fn changes(
         &mut self,
         sensitivity: &Sensitivity<'_>,
-        forces: &ForceSensitivity,
-    ) -> &[f64] {
+        forces: Option<&ForceSensitivity>,
+        changes: &mut [f64],
+    ) -> Vec<Jet> {
+        let Self {
+            list,
+            friction,
+            rubbing,
+            ..
+        } = self;
         let parameter = |id: ParameterId| sensitivity.parameter_value(id);
-        let rates = self.bearings.iter();
-        let rates = rates.map(|(k, _)| sensitivity.rate(&*self.list[*k].relation));
+        let rates = rubbing.iter();
+        let rates = rates.map(|(k, _)| sensitivity.rate(&*list[*k].relation));
         let rates: Vec<Dual> = rates.collect();
-        self.joint_friction.changes(&parameter, &rates, forces)
+        let of_friction = friction.changes(&parameter, &rates, forces);
+        for ((k, _), change) in rubbing.iter().zip(of_friction) {
+            changes[*k] = *change;
+        }
+        let coordinates = list.iter();
+        let coordinates = coordinates.map(|own| sensitivity.coordinate(&*own.relation));
+        coordinates.collect()
     }
 
     /// Finds the changes of the forces that hold, so that held coordinates do not accelerate, where

@@ -1,0 +1,177 @@
+//! The proof that no gap closes and opens again between the ends of a step.
+//!
+//! The accepted step is tracked once more: prescribed motions as they are, other drivers and freedoms on
+//! polynomials through both ends. Over each certified sub-step the certificate bounds the deviation of a
+//! gap from the straight line between its ends; the polynomials differ from the motion by what the
+//! [stages](super::stages) tell, K (s (1 − s))³ with s from 0 to 1 over the step. Where the gap may be
+//! closed the sub-step is shortened, down to a place at which the step has to end.
+
+use super::passive::{Passive, PassiveForces};
+use super::watch::FUNCTIONS;
+use crate::kinematics::{PathWatch, Solver, SubStep};
+use crate::mechanism::CoordinateKind;
+
+/// Shortest sub-step, as a part of the step: beside a limit a shorter step of the integrator is cheaper
+/// than ever shorter sub-steps. Halved, a motion that comes close to a limit ends steps half as often.
+const SHORTEST: f64 = 1.0 / 256.0;
+/// Largest second derivative of (s (1 − s))³ by s.
+const BEND: f64 = 0.375;
+/// Depth to which a gap may be closed, in gaps that are rounding: that of a contact which is touched.
+const SLACK: f64 = 4.0;
+
+/// A gap over a step.
+#[derive(Clone, Copy, Debug)]
+struct Gap {
+    /// Index of the passive force.
+    force: usize,
+    /// 1 if it grows with its coordinate, −1 if it falls.
+    sign: f64,
+    /// The gap at the pose, less that of the relation.
+    offset: f64,
+    /// The gap at the pose.
+    here: f64,
+    /// Depth to which it may be closed.
+    slack: f64,
+    /// K.
+    deviation: f64,
+}
+
+/// The watch over all gaps along a step.
+#[derive(Debug, Default)]
+pub(super) struct Gaps {
+    list: Vec<Gap>,
+    most: f64,
+    /// The place at which the step must end, as a part of it.
+    pub(super) end: Option<f64>,
+}
+
+impl Gaps {
+    /// Lists the gaps at an accepted point, where the solver is. `deviations` are the K of all freedoms' values,
+    /// by the drivers that they are.
+    pub(super) fn begin(
+        &mut self,
+        forces: &PassiveForces,
+        solver: &Solver,
+        at: &[Passive],
+        deviations: impl Iterator<Item = (usize, f64)> + Clone,
+    ) {
+        (self.most, self.end) = (f64::INFINITY, None);
+        self.list.clear();
+        for (force, at) in at.iter().enumerate() {
+            let mut value = None;
+            for side in 0..FUNCTIONS {
+                let function = forces.function(force, at, side);
+                let Some((function, sign)) = function.and_then(|f| Some((f, f.gap?))) else {
+                    continue;
+                };
+                let value =
+                    *value.get_or_insert_with(|| solver.place(&*forces.list[force].relation));
+                let parts = deviations.clone();
+                let parts = parts.map(|(driver, k)| (forces.rows[(force, driver)] * k).abs());
+                self.list.push(Gap {
+                    force,
+                    sign,
+                    offset: function.value - sign * value,
+                    here: function.value,
+                    slack: (SLACK * at.gap_rounding()).max(-2.0 * function.value),
+                    deviation: parts.sum(),
+                });
+            }
+        }
+    }
+}
+
+/// Gaps of the passive forces along a path.
+pub(super) struct GapWatch<'a> {
+    pub(super) forces: &'a PassiveForces,
+    pub(super) gaps: &'a mut Gaps,
+}
+
+impl PathWatch for GapWatch<'_> {
+    fn most(&self) -> f64 {
+        self.gaps.most
+    }
+
+    fn admits(&mut self, sub_step: &mut SubStep<'_>) -> bool {
+        let Self { forces, gaps } = self;
+        let [start, end] = sub_step.part;
+        let length = end - start;
+        if gaps.end.is_some() {
+            // The rest of the path is no part of the motion.
+            return true;
+        }
+        let bump = |s: f64| (s * (1.0 - s)).powi(3);
+        for index in 0..gaps.list.len() {
+            let gap = gaps.list[index];
+            let own = &forces.list[gap.force];
+            let is_distance = own.coordinate.kind == CoordinateKind::Distance;
+            let coordinate = is_distance.then_some(&own.coordinate);
+            let ahead = gap.sign * sub_step.value(&*own.relation) + gap.offset;
+            let ends = [
+                gap.here - gap.deviation * bump(start),
+                ahead - gap.deviation * bump(end),
+            ];
+            let sagitta = sub_step.deviation(&*own.relation, &own.columns, coordinate)
+                + 0.125 * length * length * BEND * gap.deviation;
+            if least(ends, sagitta) >= -gap.slack {
+                continue;
+            }
+            if length > SHORTEST {
+                gaps.most = start + 0.5 * length;
+                return false;
+            }
+            let [before, after] = ends;
+            let part = if after < -gap.slack && before > 0.0 {
+                before / (before - after)
+            } else {
+                0.5
+            };
+            gaps.end = Some(start + part * length);
+            return true;
+        }
+        for gap in &mut gaps.list {
+            let relation = &*forces.list[gap.force].relation;
+            gap.here = gap.sign * sub_step.value(relation) + gap.offset;
+        }
+        gaps.most = match gaps.most.is_finite() {
+            true => end + 2.0 * length,
+            false => f64::INFINITY,
+        };
+        true
+    }
+}
+
+/// Returns the least value of a gap with these values at the ends of a sub-step, which at a part σ of it
+/// deviates from the straight line between them by at most 4 σ (1 − σ) of a sagitta.
+fn least([before, after]: [f64; 2], sagitta: f64) -> f64 {
+    let rise = after - before;
+    let lowest = 0.5 - rise / (8.0 * sagitta);
+    match 0.0 < lowest && lowest < 1.0 {
+        true => before + lowest * rise - 4.0 * lowest * (1.0 - lowest) * sagitta,
+        false => before.min(after),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::least;
+
+    /// The least value is that of a dense scan of the parabola.
+    #[test]
+    fn the_least_gap_is_that_of_a_scan() {
+        for (ends, sagitta) in [
+            ([1.0, 2.0], 0.1),
+            ([1.0, 2.0], 0.5),
+            ([0.0, 1.0], 0.25),
+            ([0.0, 1.0], 0.3),
+            ([0.4, 0.3], 2.0),
+            ([0.4, 0.3], 0.0),
+        ] {
+            let at = |s: f64| ends[0] + s * (ends[1] - ends[0]) - 4.0 * s * (1.0 - s) * sagitta;
+            let scan = (0..=10_000).map(|k| at(f64::from(k) / 10_000.0));
+            let scan = scan.fold(f64::INFINITY, f64::min);
+            let found = least(ends, sagitta);
+            assert!(found <= scan && scan - found < 1e-7, "{found} {scan}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! An elastic stop: a spring and a damper beyond its limits, which never pull.
+
+use super::{Cause, Function, Mode, Passive};
+use crate::dynamics::event::EventKind;
+use crate::kinematics::Solver;
+use crate::mechanism::{ElasticStop, ParameterId};
+
+impl Cause for ElasticStop {
+    fn read(&self, solver: &Solver, at: &mut Passive) {
+        let parameters = &solver.pose().parameters;
+        let value = |id: ParameterId| parameters[id.index()];
+        at.bounds = self.limits(parameters);
+        let coordinate = [at.coordinate.value, at.coordinate.first()];
+        let push = self.push(&value, coordinate);
+        at.force = push.map_or(0.0, |(push, sign)| push * sign);
+        at.force_rounding = self.stiffness.value(parameters) * at.gap_rounding();
+    }
+
+    fn holds(&self, _: Mode) -> bool {
+        false
+    }
+
+    fn has_law(&self) -> bool {
+        true
+    }
+
+    fn released(&self, at: &Passive) -> Mode {
+        let rate = at.coordinate.first();
+        let [below, above] = at.gaps().map(|gap| -gap);
+        // At a limit it is touched if the coordinate goes beyond.
+        let is_beyond = |beyond: f64, rate: f64| {
+            let rounding = at.gap_rounding();
+            beyond > rounding || beyond.abs() <= rounding && rate > 0.0
+        };
+        let touched = if is_beyond(below, -rate) {
+            Mode::AtMin
+        } else if is_beyond(above, rate) {
+            Mode::AtMax
+        } else {
+            return Mode::Free;
+        };
+        let is_inside = below <= 0.0 && above <= 0.0;
+        match is_inside || touched.sign() * at.force > 0.0 {
+            true => touched,
+            false if touched == Mode::AtMin => Mode::LooseAtMin,
+            false => Mode::LooseAtMax,
+        }
+    }
+
+    fn function(&self, mode: Mode, at: &Passive, side: usize) -> Option<Function> {
+        let sign = mode.sign();
+        Some(match mode {
+            Mode::Free if at.bounds[side].is_infinite() => return None,
+            Mode::Free => Function::place(at, if side == 0 { 1.0 } else { -1.0 }, at.bounds[side]),
+            Mode::AtMin | Mode::AtMax if side == 0 => Function::force(at, sign * at.force),
+            Mode::LooseAtMin | Mode::LooseAtMax if side == 0 => {
+                Function::force(at, -sign * at.force)
+            }
+            Mode::AtMin | Mode::LooseAtMin => Function::place(at, -1.0, at.bounds[0]),
+            _ => Function::place(at, 1.0, at.bounds[1]),
+        })
+    }
+
+    fn agrees(&self, _: Mode, _: &Passive) -> bool {
+        true
+    }
+
+    fn event(&self, before: Mode, after: Mode, at: &Passive) -> Option<EventKind> {
+        match (before, after) {
+            (Mode::LooseAtMin | Mode::LooseAtMax, Mode::AtMin | Mode::AtMax)
+            | (_, Mode::LooseAtMin | Mode::LooseAtMax) => None,
+            (_, Mode::Free) => Some(EventKind::Leaves),
+            _ => Some(EventKind::Impact {
+                speed: at.coordinate.first().abs(),
+            }),
+        }
+    }
+}

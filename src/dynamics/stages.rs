@@ -1,0 +1,201 @@
+//! The stages of a step of the integrator: points between its ends, at which the equations were
+//! evaluated anyway.
+//!
+//! They tell how far a function of the motion may be from a polynomial H through what is known of it at
+//! both ends: as n derivatives agree there, the difference is near K (s (1 − s))ⁿ, with s from 0 to 1, and
+//! each stage tells a K. Bernstein's coefficients of H − K (s (1 − s))ⁿ then bound the function from below.
+
+use super::passive::Passive;
+use super::watch::Function;
+
+/// Points that are kept: at least the stages of one step.
+const MOST_STAGES: usize = 12;
+/// Part of a step in which stages tell K: near the ends (s (1 − s))ⁿ is small beside the errors of the
+/// first stages.
+const MIDDLE: [f64; 2] = [0.2, 0.7];
+/// Safety factor on K. Halved, a function that differs from H elsewhere than at the stages may dip unseen.
+/// Doubled, steps beside a limit are shorter by a fifth.
+const SAFETY: f64 = 2.0;
+/// Halvings of a step in the search for the least value on a polynomial.
+const HALVINGS: u32 = 10;
+/// Largest degree of a polynomial.
+const DEGREE: usize = 4;
+
+/// A point between the ends of a step.
+#[derive(Clone, Debug)]
+struct Stage {
+    time: f64,
+    /// Values of the freedoms.
+    x: Vec<f64>,
+    passive: Vec<Passive>,
+}
+
+/// The last points at which the equations were evaluated.
+#[derive(Debug)]
+pub(super) struct Stages {
+    /// The next one to be written, and all.
+    next: usize,
+    list: Vec<Stage>,
+}
+
+impl Stages {
+    /// Makes the storage; none is kept where there are no passive forces.
+    pub(super) fn new(forces: usize, freedoms: usize) -> Self {
+        let stage = Stage {
+            time: f64::NAN,
+            x: vec![0.0; freedoms],
+            passive: vec![Passive::NONE; forces],
+        };
+        let count = if forces > 0 { MOST_STAGES } else { 0 };
+        Self {
+            next: 0,
+            list: vec![stage; count],
+        }
+    }
+
+    /// Forgets all points.
+    pub(super) fn forget(&mut self) {
+        for stage in &mut self.list {
+            stage.time = f64::NAN;
+        }
+    }
+
+    /// Notes a point: values of the freedoms, and passive forces.
+    pub(super) fn note(&mut self, time: f64, x: &[f64], passive: &[Passive]) {
+        if let Some(stage) = self.list.get_mut(self.next) {
+            stage.time = time;
+            let count = stage.x.len();
+            stage.x.copy_from_slice(&x[..count]);
+            stage.passive.copy_from_slice(passive);
+            self.next = (self.next + 1) % MOST_STAGES;
+        }
+    }
+
+    /// Returns the stages of a step between two times, each with its place s in it.
+    fn between(&self, [start, end]: [f64; 2]) -> impl Iterator<Item = (f64, &Stage)> {
+        let places = self.list.iter().map(move |stage| {
+            let place = (stage.time - start) / (end - start);
+            (place, stage)
+        });
+        places.filter(|(place, _)| 0.0 < *place && *place < 1.0)
+    }
+
+    /// Returns whether a speed or a force stays above zero by `slack` within a step, as far as its values
+    /// at both ends and at the stages tell.
+    pub(super) fn tell_clear(
+        &self,
+        [before, after]: [Function; 2],
+        times: [f64; 2],
+        slack: f64,
+        value: impl Fn(&[Passive]) -> Option<f64>,
+    ) -> bool {
+        let h = times[1] - times[0];
+        let [f, g] = [before.value, after.value];
+        let values = || {
+            let stages = self.between(times);
+            stages.filter_map(|(place, stage)| Some((place, value(&stage.passive)?)))
+        };
+        let floor = -slack.max(-2.0 * f);
+        let middle = |place: f64| (MIDDLE[0]..MIDDLE[1]).contains(&place);
+        if let [Some(first), Some(last)] = [before.rate, after.rate] {
+            let mut bound = [f, f + h * first / 3.0, g - h * last / 3.0, g, 0.0];
+            let values = values().filter(|(place, _)| middle(*place));
+            let k = largest(2, values, slack, |place| on_bernstein(&bound[..4], place));
+            raise(&mut bound);
+            bound[2] -= SAFETY * k / 6.0;
+            return stays_above(bound, 4, floor, HALVINGS);
+        }
+        // Of a force no rate is known: a stage in the middle takes its place.
+        let by_middle = |(one, _): &(f64, f64), (other, _): &(f64, f64)| {
+            (one - 0.5).abs().total_cmp(&(other - 0.5).abs())
+        };
+        let Some((place, at)) = values().min_by(by_middle) else {
+            return true;
+        };
+        let bend = (at - f - place * (g - f)) / (place * (1.0 - place));
+        let parabola = |s: f64| f + s * (g - f) + s * (1.0 - s) * bend;
+        let others = values().filter(|(other, _)| middle(*other) && (other - place).abs() > 0.05);
+        let k = others.fold(0.0, |most: f64, (s, value)| {
+            let off = (value - parabola(s)).abs() - slack;
+            most.max(off / (s * (1.0 - s) * (s - place).abs()))
+        });
+        // |s − place| is below one.
+        let bound = [
+            f,
+            0.5 * (f + g + bend - SAFETY * k * place.max(1.0 - place)),
+            g,
+            0.0,
+            0.0,
+        ];
+        stays_above(bound, 2, floor, HALVINGS)
+    }
+
+    /// Returns K of each freedom's value beside a polynomial H of degree 5 through values and two
+    /// derivatives at both ends of a step.
+    pub(super) fn deviation(
+        &self,
+        times: [f64; 2],
+        freedom: usize,
+        on: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let stages = self.between(times);
+        let stages = stages.filter(|(place, _)| (MIDDLE[0]..MIDDLE[1]).contains(place));
+        let values = stages.map(|(place, stage)| (place, stage.x[freedom]));
+        SAFETY * largest(3, values, 0.0, on)
+    }
+}
+
+/// Returns the largest K of values at some places beside a polynomial, whose differences up to `slack` are
+/// rounding.
+fn largest(
+    order: i32,
+    values: impl Iterator<Item = (f64, f64)>,
+    slack: f64,
+    on: impl Fn(f64) -> f64,
+) -> f64 {
+    values.fold(0.0, |most, (place, value)| {
+        let off = (value - on(place)).abs() - slack;
+        most.max(off / (place * (1.0 - place)).powi(order))
+    })
+}
+
+/// Returns the value of a polynomial by its coefficients in those of Bernstein, at most [`DEGREE`] and one.
+fn on_bernstein(coefficients: &[f64], part: f64) -> f64 {
+    let mut own = [0.0; DEGREE + 1];
+    own[..coefficients.len()].copy_from_slice(coefficients);
+    for last in (1..coefficients.len()).rev() {
+        for k in 0..last {
+            own[k] += part * (own[k + 1] - own[k]);
+        }
+    }
+    own[0]
+}
+
+/// Raises the degree of a polynomial by one; its last coefficient is free before.
+fn raise(coefficients: &mut [f64; DEGREE + 1]) {
+    for k in (1..=DEGREE).rev() {
+        let part = k as f64 / DEGREE as f64;
+        let own = if k < DEGREE { coefficients[k] } else { 0.0 };
+        coefficients[k] = part * coefficients[k - 1] + (1.0 - part) * own;
+    }
+}
+
+/// Returns whether a polynomial by its coefficients in those of Bernstein stays above a floor between 0
+/// and 1, as far as some halvings tell.
+fn stays_above(mut right: [f64; DEGREE + 1], degree: usize, floor: f64, halvings: u32) -> bool {
+    if right[..=degree].iter().all(|value| *value >= floor) {
+        return true;
+    }
+    if halvings == 0 || right[0] < floor || right[degree] < floor {
+        return false;
+    }
+    let mut left = [0.0; DEGREE + 1];
+    for step in 0..=degree {
+        left[step] = right[0];
+        for k in 0..degree - step {
+            right[k] = 0.5 * (right[k] + right[k + 1]);
+        }
+    }
+    stays_above(left, degree, floor, halvings - 1)
+        && stays_above(right, degree, floor, halvings - 1)
+}
