@@ -126,7 +126,7 @@ impl PathWatch for GapWatch<'_> {
             } else {
                 0.5
             };
-            gaps.end = Some(start + part * length);
+            (gaps.most, gaps.end) = (f64::INFINITY, Some(start + part * length));
             return true;
         }
         for gap in &mut gaps.list {

@@ -11,7 +11,7 @@ use super::equations::Equations;
 use super::error::Error;
 use super::event::{Event, EventKind};
 use super::given::Given;
-use super::passive::Mode;
+use super::passive::{Mode, TOUCHED};
 use super::settle::Touch;
 use super::triangular::ascend;
 use crate::kinematics::{Solver, StopLimit};
@@ -25,8 +25,9 @@ const MOST_IMPACTS: usize = 100;
 /// A contact at an impact.
 struct Hit {
     touch: Touch,
-    /// Speed before \[m/s or rad/s\].
+    /// Speed before \[m/s or rad/s\], and whether it closes the contact.
     speed: f64,
+    closes: bool,
     restitution: f64,
     /// Whether it comes to rest, as its bounces are beneath rounding.
     rests: bool,
@@ -64,6 +65,7 @@ impl Equations {
             let hits = touches.iter().map(|touch| Hit {
                 touch: *touch,
                 speed: -self.opening(*touch)[0],
+                closes: closes(touch),
                 restitution: match closes(touch) {
                     true => self.passive.list[touch.force].cause.restitution(solver),
                     false => 0.0,
@@ -106,10 +108,14 @@ impl Equations {
     /// still take.
     ///
     /// Each falls as the others let it: on one that rests already, or bounces as low, it falls as if that
-    /// were closed, whose impulses are those of its force at rest on an average.
+    /// were closed, whose impulses are those of its force at rest on an average. What rested before and
+    /// is opened by the others stays touched up to a greater height.
     fn tire(&self, solver: &Solver, hits: &mut [Hit], rest: &mut [f64]) -> Result<bool, Error> {
         let openings: Vec<[f64; 2]> = hits.iter().map(|hit| self.opening(hit.touch)).collect();
-        let lowest = |hit: &Hit| LOWEST_BOUNCE * self.at(hit.touch).gap_rounding();
+        let lowest = |hit: &Hit| {
+            let height = if hit.closes { LOWEST_BOUNCE } else { TOUCHED };
+            height * self.at(hit.touch).gap_rounding()
+        };
         let largest = openings.iter().map(|[_, a]| a.abs()).fold(0.0, f64::max);
         let low = hits.iter().zip(&openings).map(|(hit, [speed, _])| {
             let rests = hit.rests || *speed <= self.at(hit.touch).resting_speed();

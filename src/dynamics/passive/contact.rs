@@ -11,7 +11,7 @@ use crate::mechanism::{Order, PassiveCause};
 /// Height from which a fall ends at rest, in gaps that are rounding: below that of all bounces.
 const LOWEST_FALL: f64 = 1.0 / 64.0;
 /// Gap up to which a contact is touched, in the same unit.
-const TOUCHED: f64 = 4.0;
+pub(in crate::dynamics) const TOUCHED: f64 = 4.0;
 
 /// A contact of a mechanism.
 #[derive(Debug)]

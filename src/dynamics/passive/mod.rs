@@ -26,6 +26,7 @@ use crate::kinematics::constraint::{Constraint, Incidence};
 use crate::kinematics::{EquationsOfMotion, ForceSensitivity, Friction, Sensitivity, Solver};
 use crate::mechanism::{Coordinate, DriverId, Dual, Jet, Load, Order, ParameterId, PassiveCause};
 use contact::Contact;
+pub(super) use contact::TOUCHED;
 use friction::Rubbing;
 
 /// Least gap, speed and acceleration that are rounding, in radians or sizes of the mechanism: some
