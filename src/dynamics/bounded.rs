@@ -70,8 +70,13 @@ pub(super) fn solve(
                 _ => 0.0,
             }
         };
+        // What does not give way moves by what is driven.
+        let rounding = |k: usize| match w[(k, k)] > 0.0 {
+            true => scale(k),
+            false => scale(k).max(noise[k]),
+        };
         let worst = (0..count)
-            .filter(|&k| violation(k) > scale(k) && w[(k, k)] > 0.0)
+            .filter(|&k| violation(k) > rounding(k))
             .max_by(|&i, &j| {
                 let size = |k: usize| violation(k) / w[(k, k)].sqrt();
                 size(i).total_cmp(&size(j))

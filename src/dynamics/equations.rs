@@ -119,7 +119,7 @@ impl Equations {
             along: vec![0.0; count],
             factor: DMatrix::zeros(count, count),
             accelerations: vec![0.0; count],
-            watch: Watch::new(&passive, count),
+            watch: Watch::new(&passive),
             passive,
             is_plain: solver.pose().drivers.len() < 2 && !solver.has_ends_of_curves(),
             rates: Rates::new(unknowns),
@@ -183,8 +183,8 @@ impl Equations {
     }
 
     /// Notes the present point, of a stage of a step, for [`judge`](Self::judge).
-    pub(super) fn note(&mut self, time: f64, x: &[f64]) {
-        self.watch.stages.note(time, x, &self.point.passive);
+    pub(super) fn note(&mut self, time: f64) {
+        self.watch.stages.note(time, &self.point.passive);
     }
 
     /// Looks for events between the accepted point and the present one.
@@ -216,22 +216,16 @@ impl Equations {
             watch,
             passive,
             accepted,
+            point,
             path,
-            freedoms,
             ..
         } = self;
-        let Watch { gaps, stages, .. } = watch;
-        let deviations = freedoms.iter().enumerate().map(|(k, freedom)| {
-            let Curve::Polynomial(on) = path.curves[freedom.index()] else {
-                return (freedom.index(), 0.0);
-            };
-            let value = |s: f64| on.iter().rev().fold(0.0, |sum, c| sum * s + c);
-            (freedom.index(), stages.deviation(times, k, value))
-        });
         solver.save(&mut self.end);
         let resumed = solver.resume(&self.pose, &self.choices);
         debug_assert!(resumed, "the choices are the solver's own");
-        gaps.begin(passive, solver, &accepted.passive, deviations);
+        let Watch { gaps, stages, .. } = watch;
+        let ends = [&*accepted.passive, &*point.passive];
+        gaps.begin(passive, solver, stages, (times, ends));
         self.is_astray = true;
         let mut gap_watch = GapWatch {
             forces: passive,

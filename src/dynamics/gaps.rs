@@ -2,11 +2,16 @@
 //!
 //! The accepted step is tracked once more: prescribed motions as they are, other drivers and freedoms on
 //! polynomials through both ends. Over each certified sub-step the certificate bounds the deviation of a
-//! gap from the straight line between its ends; the polynomials differ from the motion by what the
-//! [stages](super::stages) tell, K (s (1 − s))³ with s from 0 to 1 over the step. Where the gap may be
-//! closed the sub-step is shortened, down to a place at which the step has to end.
+//! gap from the straight line between its ends, so that narrow lobes of a cam and fast motions count
+//! wherever the stages of the step are. Where the gap may be closed the sub-step is shortened, down to a
+//! place at which the step has to end.
+//!
+//! The bound of a gap between bodies that move together is that of the motion of both, and not zero. So a
+//! gap counts as open down to [`DEPTH`]: it is the [stages](super::stages) that tell apart what is touched
+//! from what is not.
 
-use super::passive::{Passive, PassiveForces};
+use super::passive::{Passive, PassiveForces, TOUCHED};
+use super::stages::Stages;
 use super::watch::FUNCTIONS;
 use crate::kinematics::{PathWatch, Solver, SubStep};
 use crate::mechanism::CoordinateKind;
@@ -14,10 +19,10 @@ use crate::mechanism::CoordinateKind;
 /// Shortest sub-step, as a part of the step: beside a limit a shorter step of the integrator is cheaper
 /// than ever shorter sub-steps. Halved, a motion that comes close to a limit ends steps half as often.
 const SHORTEST: f64 = 1.0 / 256.0;
-/// Largest second derivative of (s (1 − s))³ by s.
-const BEND: f64 = 0.375;
-/// Depth to which a gap may be closed, in gaps that are rounding: that of a contact which is touched.
-const SLACK: f64 = 4.0;
+/// Depth to which a gap may be closed between stages, in gaps that are rounding: 1e-8 radians or sizes of
+/// the mechanism. Halved, steps beside a contact that is left slowly are shorter by a third. Doubled, lobes
+/// twice as high may pass unseen between the stages of a step.
+const DEPTH: f64 = 1e6;
 
 /// A gap over a step.
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +36,7 @@ struct Gap {
     /// The gap at the pose.
     here: f64,
     /// Depth to which it may be closed.
-    slack: f64,
-    /// K.
-    deviation: f64,
+    depth: f64,
 }
 
 /// The watch over all gaps along a step.
@@ -46,35 +49,39 @@ pub(super) struct Gaps {
 }
 
 impl Gaps {
-    /// Lists the gaps at an accepted point, where the solver is. `deviations` are the K of all freedoms' values,
-    /// by the drivers that they are.
+    /// Lists the gaps of a step between two times and points, at whose start the solver is. What stays
+    /// touched all the time is held by others.
     pub(super) fn begin(
         &mut self,
         forces: &PassiveForces,
         solver: &Solver,
-        at: &[Passive],
-        deviations: impl Iterator<Item = (usize, f64)> + Clone,
+        stages: &Stages,
+        (times, [from, to]): ([f64; 2], [&[Passive]; 2]),
     ) {
         (self.most, self.end) = (f64::INFINITY, None);
         self.list.clear();
-        for (force, at) in at.iter().enumerate() {
-            let mut value = None;
+        for (force, at) in from.iter().enumerate() {
             for side in 0..FUNCTIONS {
-                let function = forces.function(force, at, side);
-                let Some((function, sign)) = function.and_then(|f| Some((f, f.gap?))) else {
+                let function = |at: &[Passive]| forces.function(force, &at[force], side);
+                let gap = |at: &[Passive]| function(at).map(|function| function.value);
+                let Some((here, sign)) = function(from).and_then(|f| Some((f.value, f.gap?)))
+                else {
                     continue;
                 };
-                let value =
-                    *value.get_or_insert_with(|| solver.place(&*forces.list[force].relation));
-                let parts = deviations.clone();
-                let parts = parts.map(|(driver, k)| (forces.rows[(force, driver)] * k).abs());
+                let touched = TOUCHED * at.gap_rounding();
+                let is_touched = |gap: f64| gap.abs() <= touched;
+                if is_touched(here)
+                    && gap(to).is_some_and(is_touched)
+                    && stages.tell_closed(times, touched, gap)
+                {
+                    continue;
+                }
                 self.list.push(Gap {
                     force,
                     sign,
-                    offset: function.value - sign * value,
-                    here: function.value,
-                    slack: (SLACK * at.gap_rounding()).max(-2.0 * function.value),
-                    deviation: parts.sum(),
+                    offset: here - sign * solver.place(&*forces.list[force].relation),
+                    here,
+                    depth: DEPTH * at.gap_rounding(),
                 });
             }
         }
@@ -100,29 +107,22 @@ impl PathWatch for GapWatch<'_> {
             // The rest of the path is no part of the motion.
             return true;
         }
-        let bump = |s: f64| (s * (1.0 - s)).powi(3);
         for index in 0..gaps.list.len() {
             let gap = gaps.list[index];
             let own = &forces.list[gap.force];
             let is_distance = own.coordinate.kind == CoordinateKind::Distance;
             let coordinate = is_distance.then_some(&own.coordinate);
             let ahead = gap.sign * sub_step.value(&*own.relation) + gap.offset;
-            let ends = [
-                gap.here - gap.deviation * bump(start),
-                ahead - gap.deviation * bump(end),
-            ];
-            let sagitta = sub_step.deviation(&*own.relation, &own.columns, coordinate)
-                + 0.125 * length * length * BEND * gap.deviation;
-            if least(ends, sagitta) >= -gap.slack {
+            let sagitta = sub_step.deviation(&*own.relation, &own.columns, coordinate);
+            if least([gap.here, ahead], sagitta) >= -gap.depth {
                 continue;
             }
             if length > SHORTEST {
                 gaps.most = start + 0.5 * length;
                 return false;
             }
-            let [before, after] = ends;
-            let part = if after < -gap.slack && before > 0.0 {
-                before / (before - after)
+            let part = if ahead < -gap.depth && gap.here > 0.0 {
+                gap.here / (gap.here - ahead)
             } else {
                 0.5
             };

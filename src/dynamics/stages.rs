@@ -16,17 +16,17 @@ const MIDDLE: [f64; 2] = [0.2, 0.7];
 /// Safety factor on K. Halved, a function that differs from H elsewhere than at the stages may dip unseen.
 /// Doubled, steps beside a limit are shorter by a fifth.
 const SAFETY: f64 = 2.0;
+/// Distance of two stages, as a part of the step, at which one tells how well the other fits.
+const APART: f64 = 0.05;
 /// Halvings of a step in the search for the least value on a polynomial.
 const HALVINGS: u32 = 10;
 /// Largest degree of a polynomial.
-const DEGREE: usize = 4;
+const DEGREE: usize = 6;
 
 /// A point between the ends of a step.
 #[derive(Clone, Debug)]
 struct Stage {
     time: f64,
-    /// Values of the freedoms.
-    x: Vec<f64>,
     passive: Vec<Passive>,
 }
 
@@ -40,10 +40,9 @@ pub(super) struct Stages {
 
 impl Stages {
     /// Makes the storage; none is kept where there are no passive forces.
-    pub(super) fn new(forces: usize, freedoms: usize) -> Self {
+    pub(super) fn new(forces: usize) -> Self {
         let stage = Stage {
             time: f64::NAN,
-            x: vec![0.0; freedoms],
             passive: vec![Passive::NONE; forces],
         };
         let count = if forces > 0 { MOST_STAGES } else { 0 };
@@ -60,12 +59,10 @@ impl Stages {
         }
     }
 
-    /// Notes a point: values of the freedoms, and passive forces.
-    pub(super) fn note(&mut self, time: f64, x: &[f64], passive: &[Passive]) {
+    /// Notes the passive forces at a point.
+    pub(super) fn note(&mut self, time: f64, passive: &[Passive]) {
         if let Some(stage) = self.list.get_mut(self.next) {
             stage.time = time;
-            let count = stage.x.len();
-            stage.x.copy_from_slice(&x[..count]);
             stage.passive.copy_from_slice(passive);
             self.next = (self.next + 1) % MOST_STAGES;
         }
@@ -80,8 +77,8 @@ impl Stages {
         places.filter(|(place, _)| 0.0 < *place && *place < 1.0)
     }
 
-    /// Returns whether a speed or a force stays above zero by `slack` within a step, as far as its values
-    /// at both ends and at the stages tell.
+    /// Returns whether a function stays above zero within a step, but for `slack`, as far as its values at
+    /// both ends and at the stages tell.
     pub(super) fn tell_clear(
         &self,
         [before, after]: [Function; 2],
@@ -95,68 +92,77 @@ impl Stages {
             let stages = self.between(times);
             stages.filter_map(|(place, stage)| Some((place, value(&stage.passive)?)))
         };
-        let floor = -slack.max(-2.0 * f);
-        let middle = |place: f64| (MIDDLE[0]..MIDDLE[1]).contains(&place);
-        if let [Some(first), Some(last)] = [before.rate, after.rate] {
-            let mut bound = [f, f + h * first / 3.0, g - h * last / 3.0, g, 0.0];
-            let values = values().filter(|(place, _)| middle(*place));
-            let k = largest(2, values, slack, |place| on_bernstein(&bound[..4], place));
-            raise(&mut bound);
-            bound[2] -= SAFETY * k / 6.0;
-            return stays_above(bound, 4, floor, HALVINGS);
-        }
-        // Of a force no rate is known: a stage in the middle takes its place.
-        let by_middle = |(one, _): &(f64, f64), (other, _): &(f64, f64)| {
-            (one - 0.5).abs().total_cmp(&(other - 0.5).abs())
+        let in_middle = |(place, _): &(f64, f64)| (MIDDLE[0]..MIDDLE[1]).contains(place);
+        let mut bound = [0.0; DEGREE + 1];
+        let degree = match [before.rates, after.rates] {
+            [[Some(v), Some(a)], [Some(w), Some(b)]] => {
+                let [v, w] = [v, w].map(|rate| h * rate / 5.0);
+                let [a, b] = [a, b].map(|second| h * h * second / 20.0);
+                let own = [f, f + v, f + 2.0 * v + a, g - 2.0 * w + b, g - w, g];
+                lower(&mut bound, &own, values().filter(in_middle), slack)
+            }
+            [[Some(v), _], [Some(w), _]] => {
+                let own = [f, f + h * v / 3.0, g - h * w / 3.0, g];
+                lower(&mut bound, &own, values().filter(in_middle), slack)
+            }
+            // Of a force no rate is known: a stage in the middle takes its place.
+            _ => {
+                let by_middle = |(one, _): &(f64, f64), (other, _): &(f64, f64)| {
+                    (one - 0.5).abs().total_cmp(&(other - 0.5).abs())
+                };
+                let Some((place, at)) = values().min_by(by_middle) else {
+                    return true;
+                };
+                let bend = (at - f - place * (g - f)) / (place * (1.0 - place));
+                let parabola = |s: f64| f + s * (g - f) + s * (1.0 - s) * bend;
+                let others = values().filter(in_middle);
+                let others = others.filter(|(other, _)| (other - place).abs() > APART);
+                let k = others.fold(0.0, |most: f64, (s, value)| {
+                    let off = (value - parabola(s)).abs() - slack;
+                    most.max(off / (s * (1.0 - s) * (s - place).abs()))
+                });
+                let farthest = place.max(1.0 - place);
+                bound[0] = f;
+                bound[1] = 0.5 * (f + g + bend - SAFETY * k * farthest);
+                bound[2] = g;
+                2
+            }
         };
-        let Some((place, at)) = values().min_by(by_middle) else {
-            return true;
-        };
-        let bend = (at - f - place * (g - f)) / (place * (1.0 - place));
-        let parabola = |s: f64| f + s * (g - f) + s * (1.0 - s) * bend;
-        let others = values().filter(|(other, _)| middle(*other) && (other - place).abs() > 0.05);
-        let k = others.fold(0.0, |most: f64, (s, value)| {
-            let off = (value - parabola(s)).abs() - slack;
-            most.max(off / (s * (1.0 - s) * (s - place).abs()))
-        });
-        // |s − place| is below one.
-        let bound = [
-            f,
-            0.5 * (f + g + bend - SAFETY * k * place.max(1.0 - place)),
-            g,
-            0.0,
-            0.0,
-        ];
-        stays_above(bound, 2, floor, HALVINGS)
+        stays_above(bound, degree, -slack.max(-2.0 * f), HALVINGS)
     }
 
-    /// Returns K of each freedom's value beside a polynomial H of degree 5 through values and two
-    /// derivatives at both ends of a step.
-    pub(super) fn deviation(
+    /// Returns whether a gap is closed, but for `slack`, at all stages of a step.
+    pub(super) fn tell_closed(
         &self,
         times: [f64; 2],
-        freedom: usize,
-        on: impl Fn(f64) -> f64,
-    ) -> f64 {
-        let stages = self.between(times);
-        let stages = stages.filter(|(place, _)| (MIDDLE[0]..MIDDLE[1]).contains(place));
-        let values = stages.map(|(place, stage)| (place, stage.x[freedom]));
-        SAFETY * largest(3, values, 0.0, on)
+        slack: f64,
+        value: impl Fn(&[Passive]) -> Option<f64>,
+    ) -> bool {
+        let mut stages = self.between(times);
+        stages.all(|(_, stage)| value(&stage.passive).is_some_and(|gap| gap.abs() <= slack))
     }
 }
 
-/// Returns the largest K of values at some places beside a polynomial, whose differences up to `slack` are
-/// rounding.
-fn largest(
-    order: i32,
+/// Writes the coefficients of a polynomial that a function with some values within a step is above, but for
+/// `slack`, and returns its degree: of H − K (s (1 − s))ⁿ with H by its `own` coefficients.
+fn lower(
+    bound: &mut [f64; DEGREE + 1],
+    own: &[f64],
     values: impl Iterator<Item = (f64, f64)>,
     slack: f64,
-    on: impl Fn(f64) -> f64,
-) -> f64 {
-    values.fold(0.0, |most, (place, value)| {
-        let off = (value - on(place)).abs() - slack;
-        most.max(off / (place * (1.0 - place)).powi(order))
-    })
+) -> usize {
+    let order = own.len() / 2;
+    let k = values.fold(0.0, |most: f64, (place, value)| {
+        let off = (value - on_bernstein(own, place)).abs() - slack;
+        most.max(off / (place * (1.0 - place)).powi(order as i32))
+    });
+    bound[..own.len()].copy_from_slice(own);
+    let degree = own.len();
+    raise(&mut bound[..=degree]);
+    // (s (1 − s))ⁿ is the middle one of Bernstein's polynomials by its binomial coefficient.
+    let binomial = if order == 3 { 20.0 } else { 6.0 };
+    bound[order] -= SAFETY * k / binomial;
+    degree
 }
 
 /// Returns the value of a polynomial by its coefficients in those of Bernstein, at most [`DEGREE`] and one.
@@ -172,10 +178,11 @@ fn on_bernstein(coefficients: &[f64], part: f64) -> f64 {
 }
 
 /// Raises the degree of a polynomial by one; its last coefficient is free before.
-fn raise(coefficients: &mut [f64; DEGREE + 1]) {
-    for k in (1..=DEGREE).rev() {
-        let part = k as f64 / DEGREE as f64;
-        let own = if k < DEGREE { coefficients[k] } else { 0.0 };
+fn raise(coefficients: &mut [f64]) {
+    let degree = coefficients.len() - 1;
+    for k in (1..=degree).rev() {
+        let part = k as f64 / degree as f64;
+        let own = if k < degree { coefficients[k] } else { 0.0 };
         coefficients[k] = part * coefficients[k - 1] + (1.0 - part) * own;
     }
 }

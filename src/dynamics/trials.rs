@@ -29,7 +29,7 @@ impl<G: Given> System for Trials<'_, G> {
         equations.go(solver, t, None).map_err(Failure::Trial)?;
         let written = equations.write(solver, dx);
         if written.is_ok() {
-            equations.note(t, x);
+            equations.note(t);
         }
         let written = written.and_then(|()| equations.vary(solver, x, dx));
         written.map_err(|error| match error {

@@ -6,9 +6,9 @@
 //! the step would go beyond, it is taken again up to the place at which a cubic through values and rates
 //! at both ends, or a secant where rates are not known, has its zero.
 //!
-//! A step is accepted only if no function goes below zero and comes back between its ends. Gaps follow
-//! from the places of the bodies, and are [proved](super::gaps) to stay open. Speeds and forces are
-//! bounded by the [stages](super::stages) of the step.
+//! A step is accepted only if no function goes below zero and comes back between its ends, as far as the
+//! [stages](super::stages) of the step tell. Gaps, which follow from the places of the bodies, are
+//! [proved](super::gaps) to stay open also between the stages.
 
 use super::gaps::Gaps;
 use super::passive::{Passive, PassiveForces};
@@ -28,8 +28,8 @@ const MOST_CUTS: i32 = 80;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Function {
     pub(super) value: f64,
-    /// Its rate, unless it is a force.
-    pub(super) rate: Option<f64>,
+    /// Its rate, unless it is a force, and the rate of this, if it is a gap.
+    pub(super) rates: [Option<f64>; 2],
     /// A value that is rounding.
     pub(super) rounding: f64,
     /// For a gap, the direction in which it grows with its coordinate.
@@ -72,12 +72,12 @@ pub(super) enum Verdict {
 
 impl Watch {
     /// Makes the storage.
-    pub(super) fn new(forces: &PassiveForces, freedoms: usize) -> Self {
+    pub(super) fn new(forces: &PassiveForces) -> Self {
         Self {
             is_event: false,
             cuts: 0,
             beyond: None,
-            stages: Stages::new(forces.list.len(), freedoms),
+            stages: Stages::new(forces.list.len()),
             gaps: Gaps::default(),
         }
     }
@@ -127,16 +127,12 @@ impl Watch {
                 continue;
             }
             self.is_event |= before.ends_at(&after);
-            if before.gap.is_none() {
-                let value = |at: &[Passive]| {
-                    forces
-                        .function(force, &at[force], side)
-                        .map(|function| function.value)
-                };
-                let ends = [before, after];
-                let times = [start, end];
-                is_clear &= self.stages.tell_clear(ends, times, slack, value);
-            }
+            let value = |at: &[Passive]| {
+                let function = forces.function(force, &at[force], side);
+                function.map(|function| function.value)
+            };
+            let ends = [before, after];
+            is_clear &= self.stages.tell_clear(ends, [start, end], slack, value);
         }
         if !is_clear && first.is_none() && !is_shortest {
             return Verdict::Unclear;
@@ -215,7 +211,7 @@ impl Function {
     pub(super) fn place(at: &Passive, sign: f64, limit: f64) -> Self {
         Self {
             value: sign * (at.coordinate.value - limit),
-            rate: Some(sign * at.coordinate.first()),
+            rates: at.coordinate.derivatives.map(|rate| Some(sign * rate)),
             rounding: at.gap_rounding(),
             gap: Some(sign),
         }
@@ -225,7 +221,7 @@ impl Function {
     pub(super) fn speed(at: &Passive, sign: f64) -> Self {
         Self {
             value: sign * at.coordinate.first(),
-            rate: Some(sign * at.coordinate.second()),
+            rates: [Some(sign * at.coordinate.second()), None],
             rounding: at.speed_rounding(),
             gap: None,
         }
@@ -235,7 +231,7 @@ impl Function {
     pub(super) fn force(at: &Passive, value: f64) -> Self {
         Self {
             value,
-            rate: None,
+            rates: [None; 2],
             rounding: at.force_rounding,
             gap: None,
         }
@@ -249,7 +245,7 @@ impl Function {
     /// Returns how far below zero the function may be at an event.
     pub(super) fn slack(&self, after: &Self, scale: f64) -> f64 {
         let rounding = self.rounding.max(after.rounding);
-        match self.rate {
+        match self.rates[0] {
             Some(_) => rounding,
             None => {
                 let largest = scale.max(self.value.abs()).max(after.value.abs());
@@ -260,7 +256,7 @@ impl Function {
 
     /// Returns whether the function is zero at the end of a step, and falls.
     fn ends_at(&self, after: &Self) -> bool {
-        let falls = match after.rate {
+        let falls = match after.rates[0] {
             Some(rate) => rate < 0.0,
             None => after.value < self.value,
         };
@@ -273,7 +269,7 @@ impl Function {
         // A bounce ends where it began, so that it gains no height.
         let aim = (-0.5 * slack).min(self.value);
         let rise = after.value - self.value;
-        let [Some(first), Some(last)] = [self.rate, after.rate] else {
+        let [Some(first), Some(last)] = [self.rates[0], after.rates[0]] else {
             let value = self.value * weight;
             return h * (value - aim) / (value - after.value);
         };
