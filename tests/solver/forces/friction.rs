@@ -1,7 +1,7 @@
 //! Friction of what is driven: it adds to the effort of the driver.
 
-use biela::kinematics::{Direction, ForceQuantity, OutputSource, Solution};
-use biela::mechanism::DriverId;
+use biela::kinematics::{Curve, Direction, ForceQuantity, OutputSource, Path, Solution};
+use biela::mechanism::{DriverId, Jet};
 
 use crate::common::{assembled, parse};
 
@@ -74,4 +74,97 @@ fn the_effort_changes_with_velocity_and_parameter() {
         assert!((change - wanted).abs() < 1e-13, "{change} {wanted}");
     }
     assert!(OutputSource::Force(EFFORT).uses_forces(&mechanism));
+}
+
+/// Two arms on pins with friction and a third one that is held at an angle to the second: while the first
+/// turns, its pin alone rubs. The rate of the others is the rounding of two angular velocities.
+#[test]
+fn a_pin_that_does_not_turn_has_no_friction() {
+    let text = |friction: &str| {
+        format!(
+            r#"
+format = 1
+name = "arms"
+[ground.markers]
+O = [0, 0]
+D = [0, 0.3]
+[bodies.a]
+mass = 3
+inertia = 0.05
+center = [0.2, 0]
+markers = {{ O = [0, 0], T = [0.4, 0], C = [0.1, 0.2] }}
+[bodies.b]
+mass = 2
+inertia = 0.03
+center = [0.15, 0]
+markers = {{ O = [0, 0], T = [0.3, 0.1], C = [0.2, 0.1] }}
+estimate = [0.4, 0, 0.5]
+[joints]
+o = {{ type = "revolute", markers = ["ground.O", "a.O"] }}
+t = {{ type = "revolute", markers = ["a.T", "b.O"] }}
+[drivers]
+turn = {{ coordinate = "angle", markers = ["ground.O", "a.O"], start = 0.3 }}
+hold = {{ coordinate = "distance", markers = ["a.C", "b.C"], start = 0.35 }}
+{friction}
+"#
+        )
+    };
+    let rubbed = parse(&text(
+        "[friction]\nrub = { joint = \"t\", coefficient = 0.15, radius = 0.02 }",
+    ));
+    let plain = parse(&text(""));
+    for step in 0..40 {
+        let turn = Jet::new(0.3 + 0.05 * f64::from(step), [0.7, 0.1]);
+        let efforts = [&rubbed, &plain].map(|mechanism| {
+            let (mut solver, _) = assembled(mechanism);
+            let mut path = Path::new(mechanism);
+            let hold = solver.pose().drivers[1];
+            path.curves = vec![Curve::held(turn.value, 0.3), Curve::held(hold, hold)];
+            solver.track(&path).expect("the arms turn");
+            let mut solution = Solution::new(&solver);
+            solution.seek_forces(&solver);
+            solution.driver_rates = vec![turn, Jet::constant(hold)];
+            solution.solve(&mut solver).expect("rates and forces exist");
+            [0, 1].map(|driver| solution.force(ForceQuantity::Effort(DriverId(driver))))
+        });
+        assert_eq!(efforts[0], efforts[1], "at {}", turn.value);
+    }
+}
+
+/// At the turning point of a driver, whose rate is the rounding of its motion, friction is zero.
+#[test]
+fn friction_is_zero_at_a_turning_point() {
+    let mechanism = parse(
+        r#"
+format = 1
+name = "reversal"
+[ground.markers]
+O = [0, 0]
+[bodies.slider]
+mass = 2
+markers = { P = [0, 0] }
+[joints]
+guide = { type = "translational", markers = ["ground.O", "slider.P"] }
+[drivers]
+way = { coordinate = "x", markers = ["ground.O", "slider.P"], motion = "0.2*sin(3*t)" }
+[friction]
+rub = { of = "way", force = 50 }
+[simulation]
+gravity = [0, 0]
+"#,
+    );
+    for turn in 0..20 {
+        let time = (f64::from(turn) + 0.5) * std::f64::consts::PI / 3.0;
+        let (mut solver, _) = assembled(&mechanism);
+        let mut path = Path::new(&mechanism);
+        path.duration = time;
+        solver.track(&path).expect("the slider moves");
+        let mut solution = Solution::new(&solver);
+        solution.seek_forces(&solver);
+        solution.follow_motions(&solver);
+        solution.solve(&mut solver).expect("rates and forces exist");
+        let inertia = 2.0 * solution.driver_rates[0].second();
+        let effort = solution.force(ForceQuantity::Effort(DriverId(0)));
+        assert!((effort - inertia).abs() < 1e-12, "{time} s: {effort} {inertia}");
+    }
 }

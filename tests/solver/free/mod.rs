@@ -11,6 +11,7 @@
 //! | `invariance` | other freedoms, names, orders, places; time reversed |
 //! | `refused` | what has no inertia, what meets a dead point |
 //! | `events` | stops and friction against closed forms |
+//! | `unseen` | events between the ends of a step |
 //! | `play` | ropes, cams and wheels that open |
 //! | `joint_friction` | friction that grows with the reaction of its joint |
 //! | `chains` | random chains with stops and friction |
@@ -30,3 +31,4 @@ mod refused;
 mod run;
 mod state;
 mod taylor;
+mod unseen;
