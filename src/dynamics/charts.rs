@@ -2,9 +2,11 @@
 //!
 //! A coordinate is of no use near its dead point, such as the angle of a rocker at the end of its
 //! swing. The motion goes on in another one then: all freedoms and the relative coordinates of all
-//! joints are candidates. A mechanism with one set of them as its freedoms is a chart, with a
-//! solver of its own, which is compiled when it is first needed.
+//! joints are candidates, and, where those do not tell the motion, the coordinates of all bodies, some of
+//! which move wherever the mechanism does. A mechanism with one set of candidates as its freedoms is a
+//! chart, with a solver of its own, which is compiled when it is first needed.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
@@ -15,7 +17,9 @@ use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::{
     End, EquationsOfMotion, Forces, Path, RangeSettings, Rates, Solution, Solver,
 };
-use crate::mechanism::{Coordinate, DriverId, DriverSource, Jet, Joint, Mechanism};
+use crate::mechanism::{
+    Coordinate, CoordinateKind, DriverId, DriverSource, Jet, Joint, MarkerId, Mechanism,
+};
 
 /// The motion goes on in other coordinates if these move by so much, per unit of those in use:
 /// their sines are below a third then, and the equations lose less than a digit.
@@ -23,6 +27,14 @@ const EXCHANGE: f64 = 3.0;
 /// It returns to the file's own freedoms if these move by such a part of the best ones: more than
 /// at the exchange, so that the two do not alternate.
 const RETURN: f64 = 0.5;
+/// It takes coordinates of bodies if these move by so much, per unit of the best of freedoms and joints:
+/// joints that tell the motion with a digit less are preferred, as they cost the least and count turns
+/// of their own. Nearer to a dead point steps become short; farther from it bodies that are geared up
+/// would be taken without need.
+const FAR: f64 = 10.0;
+/// Part of the mechanism's size below which a distance is the worse a coordinate the smaller it is: it
+/// has a corner at zero, which the motion leaves behind in some steps from there.
+const NEAR_ZERO: f64 = 0.1;
 
 /// Returns whether the freedoms of a mechanism are good coordinates wherever it moves: each body is
 /// placed by straight formulas, or the only one turns fully and passes no change point. An end of the
@@ -45,8 +57,10 @@ pub fn keeps_coordinates(mechanism: &Arc<Mechanism>) -> bool {
 #[derive(Debug)]
 pub(super) struct Charts {
     freedoms: Vec<DriverId>,
-    /// The file's freedoms, then the coordinates of joints.
+    /// The file's freedoms, then the coordinates of joints, then those of bodies.
     candidates: Vec<Candidate>,
+    /// Number of the candidates that are no coordinates of bodies.
+    joints: usize,
     /// The candidates in use, one per freedom.
     current: Vec<usize>,
     /// Charts that are not in use.
@@ -55,8 +69,9 @@ pub(super) struct Charts {
     unfit: Vec<Vec<usize>>,
     /// ∂candidates/∂coordinates in use, scaled.
     changes: DMatrix<f64>,
-    all: Volume,
     own: Volume,
+    of_joints: Volume,
+    all: Volume,
 }
 
 /// Work space for the choice of rows that span a large volume.
@@ -82,6 +97,14 @@ impl Candidate {
             size
         }
     }
+
+    /// Returns its natural size where it has this value, larger the less it is fit there.
+    fn scale_at(&self, value: f64, size: f64) -> f64 {
+        match self.coordinate.kind {
+            CoordinateKind::Distance => size * (NEAR_ZERO * size / value).max(1.0),
+            _ => self.scale(size),
+        }
+    }
 }
 
 /// A mechanism in other coordinates.
@@ -102,8 +125,11 @@ impl Charts {
             .iter()
             .map(|id| mechanism.drivers[id.index()].coordinate);
         let joints = mechanism.joints.iter().filter_map(Joint::free_coordinate);
-        let candidates: Vec<_> = own
-            .chain(joints)
+        let mut coordinates: Vec<_> = own.chain(joints).collect();
+        let joints = coordinates.len();
+        coordinates.extend(of_bodies(mechanism));
+        let candidates: Vec<_> = coordinates
+            .into_iter()
             .map(|coordinate| Candidate {
                 relation: of_coordinate(&coordinate),
                 coordinate,
@@ -116,10 +142,18 @@ impl Charts {
             others: Vec::new(),
             unfit: Vec::new(),
             changes: DMatrix::zeros(candidates.len(), count),
-            all: Volume::new(candidates.len(), count),
             own: Volume::new(count, count),
+            of_joints: Volume::new(joints, count),
+            all: Volume::new(candidates.len(), count),
+            joints,
             candidates,
         }
+    }
+
+    /// Gives up all candidates of a single freedom but its own coordinate.
+    #[cfg(test)]
+    pub(super) fn keep_own(&mut self) {
+        self.unfit = (1..self.candidates.len()).map(|k| vec![k]).collect();
     }
 
     /// Returns the solver whose coordinates are the file's freedoms, given the one in use.
@@ -151,29 +185,67 @@ impl Charts {
         solver: &Solver,
         equations: &EquationsOfMotion,
     ) -> Option<Vec<usize>> {
-        let size = solver.size();
-        for (column, freedom) in self.freedoms.iter().enumerate() {
-            let unit = equations.unit(*freedom);
-            let own = self.candidates[self.current[column]].scale(size);
-            for (row, candidate) in self.candidates.iter().enumerate() {
-                let change = solver.coordinate(&*candidate.relation, unit).first();
-                self.changes[(row, column)] = change * own / candidate.scale(size);
-            }
-        }
-        self.all.rows.copy_from(&self.changes);
-        let volume = self.all.choose();
-        self.own
-            .rows
-            .copy_from(&self.changes.rows(0, self.freedoms.len()));
+        self.differentiate(solver, equations, 0..self.joints);
+        let joints = self.of_joints.choose(&self.changes);
+        let uses_bodies = self.current.iter().any(|k| *k >= self.joints);
+        let bodies = if uses_bodies || self.is_left_behind(solver, equations) {
+            self.differentiate(solver, equations, self.joints..self.candidates.len());
+            self.all.choose(&self.changes)
+        } else {
+            0.0
+        };
+        let far = if uses_bodies { 1.0 / RETURN } else { FAR };
+        let (volume, best) = match bodies > far * joints {
+            true => (bodies, &self.all),
+            false => (joints, &self.of_joints),
+        };
         let uses_own = self.current.iter().enumerate().all(|(k, own)| k == *own);
-        let chosen = if !uses_own && self.own.choose() >= RETURN * volume {
+        let returns = uses_bodies && bodies <= far * joints;
+        let chosen = if !uses_own && self.own.choose(&self.changes) >= RETURN * volume {
             self.own.chosen.clone()
-        } else if volume > EXCHANGE {
-            self.all.chosen.clone()
+        } else if volume > EXCHANGE || returns {
+            best.chosen.clone()
         } else {
             return None;
         };
         (!self.unfit.contains(&chosen)).then_some(chosen)
+    }
+
+    /// Writes the changes of some candidates.
+    fn differentiate(
+        &mut self,
+        solver: &Solver,
+        equations: &EquationsOfMotion,
+        candidates: Range<usize>,
+    ) {
+        let size = solver.size();
+        for (column, freedom) in self.freedoms.iter().enumerate() {
+            let unit = equations.unit(*freedom);
+            let value = solver.pose().drivers[freedom.index()];
+            let own = self.candidates[self.current[column]].scale_at(value, size);
+            for row in candidates.clone() {
+                let candidate = &self.candidates[row];
+                let at = solver.coordinate(&*candidate.relation, unit);
+                let scale = candidate.scale_at(at.value, size);
+                self.changes[(row, column)] = at.first() * own / scale;
+            }
+        }
+    }
+
+    /// Returns whether some body moves so much, per unit of the coordinates in use, that its coordinates
+    /// may be better: at less cost than its coordinates take.
+    fn is_left_behind(&self, solver: &Solver, equations: &EquationsOfMotion) -> bool {
+        let size = solver.size();
+        let columns = self.freedoms.iter().zip(&self.current);
+        columns.into_iter().any(|(freedom, current)| {
+            let value = solver.pose().drivers[freedom.index()];
+            let most = EXCHANGE / self.candidates[*current].scale_at(value, size);
+            let bodies = equations.unit(*freedom).velocity().chunks_exact(3);
+            bodies.into_iter().any(|body| {
+                let way = body[0].abs().max(body[1].abs());
+                way > most * size || body[2].abs() > most
+            })
+        })
     }
 
     /// Puts the chart with these candidates into use: the solver is that of the chart, anywhere, and
@@ -291,6 +363,27 @@ impl Charts {
     }
 }
 
+/// Returns the coordinates of all bodies, each by one of its markers, on the axes of a marker of ground.
+/// Where a mechanism moves, some of them move. A body without a marker is no part of a mechanism, and
+/// neither are bodies that nothing holds to ground.
+fn of_bodies(mechanism: &Mechanism) -> impl Iterator<Item = Coordinate> {
+    let is_ground = |id: &MarkerId| mechanism.markers[id.index()].body.is_none();
+    let ground = (0..mechanism.markers.len()).map(MarkerId).find(is_ground);
+    let ends = mechanism
+        .bodies
+        .iter()
+        .filter_map(move |body| Some((ground?, *body.markers.first()?)));
+    let kinds = [CoordinateKind::X, CoordinateKind::Y, CoordinateKind::Angle];
+    ends.flat_map(move |(from, to)| {
+        kinds.map(|kind| Coordinate {
+            kind,
+            from,
+            to,
+            axes: from,
+        })
+    })
+}
+
 impl Volume {
     fn new(rows: usize, columns: usize) -> Self {
         Self {
@@ -300,10 +393,11 @@ impl Volume {
     }
 
     /// Chooses a row for each column so that these rows span a large volume, by elimination with
-    /// complete pivoting, and returns the volume. Uses up the rows.
-    fn choose(&mut self) -> f64 {
+    /// complete pivoting, and returns the volume. They are the first of `all`.
+    fn choose(&mut self, all: &DMatrix<f64>) -> f64 {
         const NONE: usize = usize::MAX;
         let Self { rows, chosen } = self;
+        rows.copy_from(&all.rows(0, rows.nrows()));
         chosen.fill(NONE);
         let mut volume = 1.0;
         for _ in 0..rows.ncols() {

@@ -72,6 +72,10 @@ pub(super) struct Point {
     pub(super) passive: Vec<Passive>,
     /// Kinetic energy, and potential energy of gravity \[J\].
     pub(super) energy: f64,
+    /// Kinetic energy alone \[J\].
+    pub(super) kinetic_energy: f64,
+    /// Work of all that acts on the bodies but gravity since the energy was noted \[J\].
+    pub(super) work: f64,
 }
 
 impl Point {
@@ -80,6 +84,8 @@ impl Point {
         self.loads.copy_from_slice(&other.loads);
         self.passive.copy_from_slice(&other.passive);
         self.energy = other.energy;
+        self.kinetic_energy = other.kinetic_energy;
+        self.work = other.work;
     }
 
     /// Returns whether a motion goes on smoothly from one point to another at the same place: with
@@ -107,6 +113,8 @@ impl Equations {
             loads: vec![0.0; forces.loads()],
             passive: vec![Passive::NONE; passive.list.len()],
             energy: 0.0,
+            kinetic_energy: 0.0,
+            work: 0.0,
         };
         let mut equations = Self {
             freedoms,
@@ -153,7 +161,8 @@ impl Equations {
         self.point.drivers.copy_from_slice(&state.drivers);
         self.point.loads.copy_from_slice(&state.loads);
         self.point.passive.copy_from_slice(&state.passive);
-        self.point.energy = state.energies[0];
+        [self.point.energy, self.point.kinetic_energy, _] = state.energies;
+        self.point.work = state.integrator.x[2 * self.freedoms.len()];
         self.passive.resume(&state.modes);
         self.watch.begin();
         self.accept(solver);
@@ -316,6 +325,7 @@ impl Equations {
         time: f64,
         x: &[f64],
     ) {
+        self.point.work = x[2 * self.freedoms.len()];
         let (positions, velocities) = x.split_at(self.freedoms.len());
         let mut free = positions.iter().zip(velocities);
         let definitions = solver.mechanism().drivers.iter().enumerate();
@@ -440,12 +450,14 @@ impl Equations {
             loads,
             passive: at,
             energy,
+            kinetic_energy,
+            ..
         } = point;
         let inputs = loads.len() - passive.loads();
         loads[inputs..].fill(0.0);
         let velocity = |driver: DriverId| drivers[driver.index()].first();
         solver.write_equations(velocity, loads, forces, motion)?;
-        *energy = motion.energy;
+        (*energy, *kinetic_energy) = (motion.energy, motion.kinetic_energy);
         passive.begin(solver, motion, at);
         self.prepare(solver)?;
         if self.passive.rubbing.is_empty() {

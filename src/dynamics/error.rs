@@ -2,7 +2,7 @@
 
 use super::integrator;
 use crate::kinematics::{self, StopLimit};
-use crate::mechanism::fixed;
+use crate::mechanism::{fixed, shown};
 
 /// The reason for which a free motion stops.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -45,6 +45,20 @@ pub enum Error {
     TooManyEvents {
         /// Time of the last one \[s\].
         time: f64,
+    },
+    /// The energy of a step is not that of the work done, however short the step.
+    #[error(
+        "t = {} s: the free motion cannot go on: its energy changes by {} J without a cause, with {} J in \
+         motion; a smaller `tolerance` or other coordinates for the freedoms may do",
+        fixed(*.time, 9), shown(*.change), shown(*.kinetic)
+    )]
+    Energy {
+        /// Time at the end of the step \[s\].
+        time: f64,
+        /// Energy gained \[J\].
+        change: f64,
+        /// Kinetic energy, the larger one of both ends of the step \[J\].
+        kinetic: f64,
     },
     /// The mechanism comes to no rest.
     #[error("no stable equilibrium was found from the start: downhill motion comes to no rest")]

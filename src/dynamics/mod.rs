@@ -20,6 +20,7 @@
 //! | `gaps` | the proof that no gap closes between the ends of a step |
 //! | `watch` | the search for the instants at which modes end |
 //! | `equations` | the right-hand side |
+//! | `energy` | the balance of energy of a step |
 //! | `impact` | velocities after impacts |
 //! | `settle` | the modes after an event |
 //! | `choose` | the choice of what is held after an event |
@@ -31,6 +32,7 @@
 mod bounded;
 mod charts;
 mod choose;
+mod energy;
 mod equations;
 mod error;
 mod event;

@@ -1,5 +1,8 @@
 //! The free motion of a mechanism.
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
@@ -190,7 +193,7 @@ impl FreeMotion {
             loads: accepted.loads.clone(),
             modes: self.equations.passive.state().collect(),
             passive: accepted.passive.clone(),
-            energies: [accepted.energy, self.energy],
+            energies: self.energies(),
         }
     }
 
@@ -205,7 +208,13 @@ impl FreeMotion {
         let modes = state.modes.iter_mut().zip(self.equations.passive.state());
         modes.for_each(|(to, mode)| *to = mode);
         state.passive.copy_from_slice(&accepted.passive);
-        state.energies = [accepted.energy, self.energy];
+        state.energies = self.energies();
+    }
+
+    /// Returns the energies of a state.
+    fn energies(&self) -> [f64; 3] {
+        let accepted = &self.equations.accepted;
+        [accepted.energy, accepted.kinetic_energy, self.energy]
     }
 
     /// Makes the solver that of the coordinates of a state, at any pose, gives the solution its forces,
@@ -242,7 +251,7 @@ impl FreeMotion {
         self.set_tolerance(state.tolerance)?;
         let restored = self.integrator.restore(&state.integrator);
         restored.map_err(unusable)?;
-        self.energy = state.energies[1];
+        self.energy = state.energies[2];
         self.equations.resume(solver, state);
         Ok(())
     }
@@ -437,6 +446,7 @@ impl FreeMotion {
                 solver,
                 equations: &mut self.equations,
                 given,
+                tolerance: self.tolerance,
             };
             match self
                 .integrator

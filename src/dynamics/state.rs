@@ -23,6 +23,7 @@ pub struct FreeState {
     pub modes: Vec<(Mode, f64)>,
     /// Each passive force there.
     pub passive: Vec<Passive>,
-    /// Energy of the bodies without that of springs, there and when the work was zero \[J\].
-    pub energies: [f64; 2],
+    /// Energy of the bodies without that of springs there, its kinetic part, and that energy when the
+    /// work was zero \[J\].
+    pub energies: [f64; 3],
 }

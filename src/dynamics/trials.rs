@@ -14,6 +14,8 @@ pub(super) struct Trials<'a, G> {
     pub(super) solver: &'a mut Solver,
     pub(super) equations: &'a mut Equations,
     pub(super) given: &'a G,
+    /// Relative tolerance of the motion.
+    pub(super) tolerance: f64,
 }
 
 impl<G: Given> System for Trials<'_, G> {
@@ -24,6 +26,7 @@ impl<G: Given> System for Trials<'_, G> {
             solver,
             equations,
             given,
+            ..
         } = self;
         equations.set_drivers(solver, *given, t, x);
         equations.go(solver, t, None).map_err(Failure::Trial)?;
@@ -51,6 +54,7 @@ impl<G: Given> System for Trials<'_, G> {
             solver,
             equations,
             given,
+            ..
         } = self;
         let differentiated = equations.differentiate(solver, *given, (t, x), jacobian, dx_dt);
         differentiated.map_err(Failure::Trial)
@@ -67,6 +71,8 @@ impl<G: Given> System for Trials<'_, G> {
             Verdict::Ends(time) => return Err(Failure::Cut(time)),
             Verdict::Unclear => return Err(Failure::Unclear),
         }
+        let balances = self.equations.balance(self.solver, self.tolerance);
+        balances.map_err(Failure::Trial)?;
         let proved = self.equations.prove(self.solver, self.given);
         let closes = proved.map_err(|error| match error {
             // The time of a stop is known: no shorter steps have to find it.

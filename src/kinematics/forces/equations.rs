@@ -34,6 +34,11 @@ pub struct EquationsOfMotion {
     pub applied_power: f64,
     /// Energy of the bodies without that of springs: kinetic, and potential of gravity \[J\].
     pub energy: f64,
+    /// Its kinetic part \[J\].
+    pub kinetic_energy: f64,
+    /// Kinetic energies of all bodies at 1 m/s without turning, and at 1 rad/s about their centres of
+    /// mass \[J\].
+    pub at_unit_speeds: [f64; 2],
     /// Rates of q where no driver accelerates.
     coasting: Rates,
     /// ∂q/∂u of each driver.
@@ -53,6 +58,8 @@ impl EquationsOfMotion {
             applied: vec![0.0; drivers],
             applied_power: 0.0,
             energy: 0.0,
+            kinetic_energy: 0.0,
+            at_unit_speeds: [0.0; 2],
             coasting: Rates::new(unknowns),
             units: vec![Rates::new(unknowns); drivers],
             driver_rates: vec![Jet::constant(0.0); drivers],
@@ -102,7 +109,7 @@ impl EquationsOfMotion {
         self.bias.fill(0.0);
         self.applied.fill(0.0);
         self.applied_power = 0.0;
-        let mut energies = [0.0; 2];
+        let (mut energies, mut at_unit_speeds) = ([0.0; 2], [0.0; 2]);
         let gravity = masses.gravity;
         let rates = [self.coasting.velocity(), self.coasting.acceleration()];
         let [velocities, accelerations] = rates.map(by_body);
@@ -111,6 +118,8 @@ impl EquationsOfMotion {
             body.turn([frames[k].cos, frames[k].sin]);
             let own = body.energies(frames[k].origin.into(), velocities[k], gravity);
             energies = [energies[0] + own[0], energies[1] + own[1]];
+            let own = body.at_unit_speeds();
+            at_unit_speeds = [at_unit_speeds[0] + own[0], at_unit_speeds[1] + own[1]];
             let exerted = by_body(exerted)[k];
             self.applied_power -= power(velocities[k], exerted);
             let rest = body.weighted(body.felt(velocities[k][2], accelerations[k], gravity));
@@ -135,6 +144,8 @@ impl EquationsOfMotion {
             }
         }
         self.energy = energies[0] + energies[1];
+        self.kinetic_energy = energies[0];
+        self.at_unit_speeds = at_unit_speeds;
     }
 }
 

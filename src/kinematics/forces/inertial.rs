@@ -222,6 +222,12 @@ impl<N: Number> MassProperties<N> {
 }
 
 impl MassProperties<f64> {
+    /// Returns the kinetic energies at 1 m/s without turning, and at 1 rad/s about the centre of mass.
+    #[inline]
+    pub(super) fn at_unit_speeds(&self) -> [f64; 2] {
+        [0.5 * self.mass, 0.5 * self.inertia]
+    }
+
     /// Returns √M v, for the root of M that belongs to the centre of mass: the product of two of them is
     /// that of one with the momentum of the other.
     #[inline]

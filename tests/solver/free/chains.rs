@@ -7,9 +7,13 @@ use super::run::{Fed, Run};
 use crate::common::parse;
 
 /// Numbers from 0 to 1, the same in every run.
-struct Random(u64);
+pub(super) struct Random(u64);
 
 impl Random {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     fn number(&mut self) -> f64 {
         self.0 = self
             .0
@@ -18,7 +22,7 @@ impl Random {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.number()
     }
 }
@@ -106,7 +110,7 @@ fn chain(random: &mut Random) -> String {
 #[test]
 fn chains_keep_their_balances() {
     for case in 0..30 {
-        let mut random = Random(case);
+        let mut random = Random::new(case);
         let text = chain(&mut random);
 
         let mut run = Run::new(&parse(&text), 1e-9, Fed::default());

@@ -9,6 +9,7 @@
 //! | `lagrange` | minimal coordinates |
 //! | `published` | Andrews' mechanism, the problems of the IFToMM library |
 //! | `invariance` | other freedoms, names, orders, places; time reversed |
+//! | `dead_points` | coordinates with dead points on the way, where no joint has another |
 //! | `refused` | what has no inertia, what meets a dead point |
 //! | `events` | stops and friction against closed forms |
 //! | `unseen` | events between the ends of a step |
@@ -19,6 +20,7 @@
 
 mod chains;
 mod closed_form;
+mod dead_points;
 mod events;
 mod invariance;
 mod joint_friction;

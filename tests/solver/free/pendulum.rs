@@ -71,7 +71,7 @@ fn faster(omega: f64, speed: f64) -> Modulus {
 
 /// Angle and rate of a pendulum that passes its lowest position fast enough to turn over:
 /// φ = 2 am(v t/2, 2 ω/v).
-fn turning(omega: f64, speed: f64, t: f64) -> Vec<f64> {
+pub(super) fn turning(omega: f64, speed: f64, t: f64) -> Vec<f64> {
     let modulus = faster(omega, speed);
     let am = amplitude(0.5 * speed * t, modulus);
     let dn = am.cos().hypot(modulus.complement * am.sin());

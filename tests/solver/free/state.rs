@@ -3,13 +3,19 @@
 use biela::dynamics::FreeMotion;
 use biela::kinematics::SolverChoices;
 
+use super::dead_points::swing;
 use super::lagrange::torque_input;
 use super::run::{Fed, Run};
-use crate::common::{assembled, shipped};
+use crate::common::{assembled, parse, shipped};
 
 #[test]
 fn a_motion_goes_on_from_its_state_in_another_solver() {
-    for (name, fed, until) in [
+    // Its height has its dead point at 0.728 s.
+    let swing = swing(
+        r#"coordinate = "y", markers = ["ground.O", "seat.A"], start = -1.6"#,
+        [1.2, -1.6],
+    );
+    let mechanisms = [
         ("pendulum_free", Fed::default(), 2.0),
         ("double_pendulum", Fed::default(), 2.0),
         ("engine_free", torque_input(), 0.5),
@@ -20,8 +26,10 @@ fn a_motion_goes_on_from_its_state_in_another_solver() {
         ("swinging_tip", Fed::default(), 2.0),
         ("cart_pole", torque_input(), 2.0),
         ("andrews_free", Fed::default(), 0.03),
-    ] {
-        let mechanism = shipped(name);
+    ]
+    .map(|(name, fed, until)| (name, shipped(name), fed, until));
+    let swing = ("swing", parse(&swing), Fed::default(), 2.0);
+    for (name, mechanism, fed, until) in mechanisms.into_iter().chain([swing]) {
         let mut run = Run::new(&mechanism, 1e-8, fed);
         // Between the integrator's own steps, and at the start.
         for part in [0.0, 0.37, 0.3701, 0.8] {
