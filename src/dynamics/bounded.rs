@@ -70,7 +70,7 @@ pub(super) fn solve(
                 _ => 0.0,
             }
         };
-        // What does not give way moves by what is driven.
+        // A coordinate that does not give way is driven.
         let rounding = |k: usize| match w[(k, k)] > 0.0 {
             true => scale(k),
             false => scale(k).max(noise[k]),

@@ -10,9 +10,9 @@
 //! gap counts as open down to [`DEPTH`]: it is the [stages](super::stages) that tell apart what is touched
 //! from what is not.
 
+use super::function::FUNCTIONS;
 use super::passive::{Passive, PassiveForces, TOUCHED};
 use super::stages::Stages;
-use super::watch::FUNCTIONS;
 use crate::kinematics::{PathWatch, Solver, SubStep};
 use crate::mechanism::CoordinateKind;
 

@@ -15,6 +15,7 @@
 //! | `charts` | the coordinates in which the freedoms are integrated |
 //! | `triangular`, `bounded` | triangular factors; forces between bounds |
 //! | `event` | [`Event`]s, and how they are called |
+//! | `function` | a function that is positive while a passive force keeps its mode |
 //! | `passive` | [`Passive`] forces, those of stops and friction: their modes, a file per cause |
 //! | `stages` | bounds of speeds and forces between the ends of a step |
 //! | `gaps` | the proof that no gap closes between the ends of a step |
@@ -36,6 +37,7 @@ mod energy;
 mod equations;
 mod error;
 mod event;
+mod function;
 mod gaps;
 mod given;
 mod impact;

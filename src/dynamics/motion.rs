@@ -11,11 +11,11 @@ use super::charts::Charts;
 use super::equations::Equations;
 use super::error::Error;
 use super::event::Event;
+use super::function::FUNCTIONS;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
 use super::state::FreeState;
 use super::trials::Trials;
-use super::watch::FUNCTIONS;
 use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, Jet};
 

@@ -5,8 +5,8 @@
 //! both ends: as n derivatives agree there, the difference is near K (s (1 − s))ⁿ, with s from 0 to 1, and
 //! each stage tells a K. Bernstein's coefficients of H − K (s (1 − s))ⁿ then bound the function from below.
 
+use super::function::Function;
 use super::passive::Passive;
-use super::watch::Function;
 
 /// Points that are kept: at least the stages of one step.
 const MOST_STAGES: usize = 12;
@@ -16,6 +16,9 @@ const MIDDLE: [f64; 2] = [0.2, 0.7];
 /// Safety factor on K. Halved, a function that differs from H elsewhere than at the stages may dip unseen.
 /// Doubled, steps beside a limit are shorter by a fifth.
 const SAFETY: f64 = 2.0;
+/// Noise of a function at the stages, in values that are rounding at the ends: stages are points off the
+/// motion, at which rounding is that of larger accelerations.
+const NOISE: f64 = 8.0;
 /// Distance of two stages, as a part of the step, at which one tells how well the other fits.
 const APART: f64 = 0.05;
 /// Halvings of a step in the search for the least value on a polynomial.
@@ -77,8 +80,8 @@ impl Stages {
         places.filter(|(place, _)| 0.0 < *place && *place < 1.0)
     }
 
-    /// Returns whether a function stays above zero within a step, but for `slack`, as far as its values at
-    /// both ends and at the stages tell.
+    /// Returns whether a function stays above zero within a step, but for some `slack` that is rounding, as
+    /// far as its values at both ends and at the stages tell.
     pub(super) fn tell_clear(
         &self,
         [before, after]: [Function; 2],
@@ -87,6 +90,7 @@ impl Stages {
         value: impl Fn(&[Passive]) -> Option<f64>,
     ) -> bool {
         let h = times[1] - times[0];
+        let noise = NOISE * slack;
         let [f, g] = [before.value, after.value];
         let values = || {
             let stages = self.between(times);
@@ -99,13 +103,13 @@ impl Stages {
                 let [v, w] = [v, w].map(|rate| h * rate / 5.0);
                 let [a, b] = [a, b].map(|second| h * h * second / 20.0);
                 let own = [f, f + v, f + 2.0 * v + a, g - 2.0 * w + b, g - w, g];
-                lower(&mut bound, &own, values().filter(in_middle), slack)
+                lower(&mut bound, &own, values().filter(in_middle), noise)
             }
             [[Some(v), _], [Some(w), _]] => {
                 let own = [f, f + h * v / 3.0, g - h * w / 3.0, g];
-                lower(&mut bound, &own, values().filter(in_middle), slack)
+                lower(&mut bound, &own, values().filter(in_middle), noise)
             }
-            // Of a force no rate is known: a stage in the middle takes its place.
+            // A force has no known rate: a stage in the middle takes its place.
             _ => {
                 let by_middle = |(one, _): &(f64, f64), (other, _): &(f64, f64)| {
                     (one - 0.5).abs().total_cmp(&(other - 0.5).abs())
@@ -118,7 +122,7 @@ impl Stages {
                 let others = values().filter(in_middle);
                 let others = others.filter(|(other, _)| (other - place).abs() > APART);
                 let k = others.fold(0.0, |most: f64, (s, value)| {
-                    let off = (value - parabola(s)).abs() - slack;
+                    let off = (value - parabola(s)).abs() - noise;
                     most.max(off / (s * (1.0 - s) * (s - place).abs()))
                 });
                 let farthest = place.max(1.0 - place);
@@ -128,7 +132,7 @@ impl Stages {
                 2
             }
         };
-        stays_above(bound, degree, -slack.max(-2.0 * f), HALVINGS)
+        stays_above(bound, degree, -noise.max(-2.0 * f), HALVINGS)
     }
 
     /// Returns whether a gap is closed, but for `slack`, at all stages of a step.
@@ -144,16 +148,16 @@ impl Stages {
 }
 
 /// Writes the coefficients of a polynomial that a function with some values within a step is above, but for
-/// `slack`, and returns its degree: of H − K (s (1 − s))ⁿ with H by its `own` coefficients.
+/// `noise`, and returns its degree: of H − K (s (1 − s))ⁿ with H by its `own` coefficients.
 fn lower(
     bound: &mut [f64; DEGREE + 1],
     own: &[f64],
     values: impl Iterator<Item = (f64, f64)>,
-    slack: f64,
+    noise: f64,
 ) -> usize {
     let order = own.len() / 2;
     let k = values.fold(0.0, |most: f64, (place, value)| {
-        let off = (value - on_bernstein(own, place)).abs() - slack;
+        let off = (value - on_bernstein(own, place)).abs() - noise;
         most.max(off / (place * (1.0 - place)).powi(order as i32))
     });
     bound[..own.len()].copy_from_slice(own);

@@ -11,7 +11,7 @@ pub enum Failure<C> {
     Hard(C),
     /// The step must end at this time or before, later than its start: an event lies there \[s\].
     Cut(f64),
-    /// What happens between its ends is not clear: the integrator tries a shorter step.
+    /// An event may lie between its ends: the integrator tries a shorter step.
     Unclear,
 }
 

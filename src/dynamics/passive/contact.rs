@@ -67,9 +67,9 @@ impl Cause for Contact {
                 let sign = if side == 0 { 1.0 } else { -1.0 };
                 at.bounds[side]
                     .is_finite()
-                    .then(|| Function::place(at, sign, at.bounds[side]))
+                    .then(|| at.place(sign, at.bounds[side]))
             }
-            (_, 0) => Some(Function::force(at, mode.sign() * at.force)),
+            (_, 0) => Some(at.push(mode.sign() * at.force)),
             _ => None,
         }
     }

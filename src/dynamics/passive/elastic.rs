@@ -51,13 +51,11 @@ impl Cause for ElasticStop {
         let sign = mode.sign();
         Some(match mode {
             Mode::Free if at.bounds[side].is_infinite() => return None,
-            Mode::Free => Function::place(at, if side == 0 { 1.0 } else { -1.0 }, at.bounds[side]),
-            Mode::AtMin | Mode::AtMax if side == 0 => Function::force(at, sign * at.force),
-            Mode::LooseAtMin | Mode::LooseAtMax if side == 0 => {
-                Function::force(at, -sign * at.force)
-            }
-            Mode::AtMin | Mode::LooseAtMin => Function::place(at, -1.0, at.bounds[0]),
-            _ => Function::place(at, 1.0, at.bounds[1]),
+            Mode::Free => at.place(if side == 0 { 1.0 } else { -1.0 }, at.bounds[side]),
+            Mode::AtMin | Mode::AtMax if side == 0 => at.push(sign * at.force),
+            Mode::LooseAtMin | Mode::LooseAtMax if side == 0 => at.push(-sign * at.force),
+            Mode::AtMin | Mode::LooseAtMin => at.place(-1.0, at.bounds[0]),
+            _ => at.place(1.0, at.bounds[1]),
         })
     }
 

@@ -8,7 +8,7 @@
 
 use super::{Cause, Function, Mode, Passive};
 use crate::dynamics::event::EventKind;
-use crate::dynamics::watch::FORCE_ROUNDING;
+use crate::dynamics::function::FORCE_ROUNDING;
 use crate::kinematics::Solver;
 use crate::mechanism::Order;
 
@@ -42,16 +42,16 @@ impl Cause for Rubbing {
     fn function(&self, mode: Mode, at: &Passive, side: usize) -> Option<Function> {
         let sign = if side == 0 { 1.0 } else { -1.0 };
         match mode {
-            Mode::Growing | Mode::Falling if side == 0 => Some(Function::speed(at, mode.sign())),
+            Mode::Growing | Mode::Falling if side == 0 => Some(at.speed(mode.sign())),
             // It rests as others do, until something drives it away.
             Mode::Sticking if at.is_dependent => {
-                let speed = Function::speed(at, -sign);
+                let speed = at.speed(-sign);
                 Some(Function {
                     value: at.slow(Order::Velocity) + speed.value,
                     ..speed
                 })
             }
-            Mode::Sticking => Some(Function::force(at, sign * (at.force - at.bounds[side]))),
+            Mode::Sticking => Some(at.push(sign * (at.force - at.bounds[side]))),
             _ => None,
         }
     }

@@ -20,8 +20,8 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::event::EventKind;
+use super::function::{FUNCTIONS, Function};
 use super::triangular::{ascend, descend, factorise};
-use super::watch::{FUNCTIONS, Function};
 use crate::kinematics::constraint::{Constraint, Incidence};
 use crate::kinematics::{EquationsOfMotion, ForceSensitivity, Friction, Sensitivity, Solver};
 use crate::mechanism::{Coordinate, DriverId, Dual, Jet, Load, Order, ParameterId, PassiveCause};
@@ -122,6 +122,36 @@ impl Passive {
         self.roundings[1]
     }
 
+    /// Returns the distance of the coordinate from a limit, which grows with it for a sign of 1.
+    fn place(&self, sign: f64, limit: f64) -> Function {
+        Function {
+            value: sign * (self.coordinate.value - limit),
+            rates: self.coordinate.derivatives.map(|rate| Some(sign * rate)),
+            rounding: self.gap_rounding(),
+            gap: Some(sign),
+        }
+    }
+
+    /// Returns the rate of the coordinate, or its opposite for a sign of −1.
+    fn speed(&self, sign: f64) -> Function {
+        Function {
+            value: sign * self.coordinate.first(),
+            rates: [Some(sign * self.coordinate.second()), None],
+            rounding: self.speed_rounding(),
+            gap: None,
+        }
+    }
+
+    /// Returns a force, or its distance from a limit.
+    fn push(&self, value: f64) -> Function {
+        Function {
+            value,
+            rates: [None; 2],
+            rounding: self.force_rounding,
+            gap: None,
+        }
+    }
+
     /// Returns the speed up to which the coordinate may rest \[m/s or rad/s\], or the acceleration up to
     /// which its rate may stay.
     pub(super) fn slow(&self, order: Order) -> f64 {
@@ -162,7 +192,7 @@ pub(super) trait Cause: Debug + Send + Sync {
     }
 
     /// Returns a function of the motion that is positive while the mode lasts; `None` if that cannot end
-    /// the mode. Each force has [`FUNCTIONS`](super::watch::FUNCTIONS) of them.
+    /// the mode. Each force has [`FUNCTIONS`] of them.
     fn function(&self, mode: Mode, at: &Passive, side: usize) -> Option<Function>;
 
     /// Returns whether the force, or the acceleration of the coordinate, is one that belongs to the mode.

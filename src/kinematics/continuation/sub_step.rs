@@ -1,4 +1,4 @@
-//! What may be asked of a certified sub-step, and who asks.
+//! Certified sub-steps of a path, and the watch over them.
 
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::constraint::Constraint;

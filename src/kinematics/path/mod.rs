@@ -55,7 +55,7 @@ impl Curve {
     #[must_use]
     pub fn through(from: Jet, to: Jet) -> Self {
         let [first, half] = [from.first(), 0.5 * from.second()];
-        // What is left of value and derivatives at the end.
+        // The rest of value and derivatives at the end.
         let value = to.value - (from.value + first + half);
         let slope = to.first() - (first + 2.0 * half);
         let bend = to.second() - 2.0 * half;

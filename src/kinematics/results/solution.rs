@@ -63,7 +63,7 @@ pub struct Solution {
     lifted: Vec<bool>,
     /// Friction of a mechanism without freedoms, whose motion would tell the loads.
     friction: Friction,
-    /// Where each of it acts, in its order.
+    /// Place of each, in its order.
     rubbed: Vec<Rubbed>,
 }
 

@@ -101,7 +101,7 @@ markers = {{ O = [0, 0], T = [0.3, 0.1], C = [0.2, 0.1] }}
 estimate = [0.4, 0, 0.5]
 [joints]
 o = {{ type = "revolute", markers = ["ground.O", "a.O"] }}
-t = {{ type = "revolute", markers = ["a.T", "b.O"] }}
+elbow = {{ type = "revolute", markers = ["a.T", "b.O"] }}
 [drivers]
 turn = {{ coordinate = "angle", markers = ["ground.O", "a.O"], start = 0.3 }}
 hold = {{ coordinate = "distance", markers = ["a.C", "b.C"], start = 0.35 }}
@@ -110,7 +110,7 @@ hold = {{ coordinate = "distance", markers = ["a.C", "b.C"], start = 0.35 }}
         )
     };
     let rubbed = parse(&text(
-        "[friction]\nrub = { joint = \"t\", coefficient = 0.15, radius = 0.02 }",
+        "[friction]\nrub = { joint = \"elbow\", coefficient = 0.15, radius = 0.02 }",
     ));
     let plain = parse(&text(""));
     for step in 0..40 {
@@ -165,6 +165,9 @@ gravity = [0, 0]
         solution.solve(&mut solver).expect("rates and forces exist");
         let inertia = 2.0 * solution.driver_rates[0].second();
         let effort = solution.force(ForceQuantity::Effort(DriverId(0)));
-        assert!((effort - inertia).abs() < 1e-12, "{time} s: {effort} {inertia}");
+        assert!(
+            (effort - inertia).abs() < 1e-12,
+            "{time} s: {effort} {inertia}"
+        );
     }
 }
