@@ -17,11 +17,12 @@
 //!   end, or is refused where these are blocked;
 //! - no call takes more than [`MOST_SUBSTEPS`] sub-steps.
 //!
-//! [`change_points`] has forces at change points.
+//! [`change_points`] has forces at change points, [`free`] motions that are free.
 
 mod change_points;
 mod extremes;
 mod far;
+mod free;
 mod kinds;
 mod text;
 
@@ -39,6 +40,7 @@ pub use change_points::{FORCE_KINDS, force_case, run_forces};
 pub use text::Variant;
 
 pub use extremes::try_extremes;
+pub use free::{FREE_KINDS, FreeCounts, free_case, free_events, run_free};
 pub use kinds::{Draw, KINDS};
 
 /// Most sub-steps of a call.

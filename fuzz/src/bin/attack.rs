@@ -77,6 +77,21 @@ fn main() -> ExitCode {
         println!("{name}, seeds {seed} to {last}: {counts:?}");
         differ += counts.differ;
     }
+    for (index, (name, _)) in fuzz::attack::FREE_KINDS.iter().enumerate() {
+        if kind.as_deref().is_some_and(|kind| kind != *name) {
+            continue;
+        }
+        let counts = fuzz::attack::run_free(index, seed, cases, |case, finding| {
+            println!("{name}, seed {case}: {finding}");
+        });
+        if cases == 1 {
+            println!("{}", fuzz::attack::free_case(index, seed));
+            println!("{}", fuzz::attack::free_events(index, seed));
+        }
+        let last = seed + cases - 1;
+        println!("{name}, seeds {seed} to {last}: {counts:?}");
+        differ += counts.differ;
+    }
     if differ == 0 {
         ExitCode::SUCCESS
     } else {

@@ -1,0 +1,184 @@
+//! Events of two motions, side by side.
+
+use std::collections::BTreeSet;
+
+use biela::dynamics::EventKind;
+
+/// An event by its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Happening {
+    pub time: f64,
+    /// Name of the stop, joint or friction.
+    pub name: String,
+    pub kind: EventKind,
+}
+
+/// Impacts below this speed may differ \[m/s or rad/s\]: bounces of a micrometre.
+pub const SLOW: f64 = 5e-3;
+
+impl Happening {
+    /// Returns the speed of an impact, infinite of other events.
+    pub fn speed(&self) -> f64 {
+        match self.kind {
+            EventKind::Impact { speed } => speed,
+            _ => f64::INFINITY,
+        }
+    }
+
+    fn is_impact(&self) -> bool {
+        matches!(self.kind, EventKind::Impact { .. })
+    }
+
+    /// Tells the event.
+    pub fn told(&self) -> String {
+        format!("{:?} of {} at {} s", self.kind, self.name, self.time)
+    }
+}
+
+/// Pairs of events of two motions, by their places there.
+#[derive(Debug, Default)]
+pub struct Alignment {
+    pub pairs: Vec<[usize; 2]>,
+    /// The first event that has no other, with its time \[s\], in words.
+    pub odd: Option<(f64, String)>,
+}
+
+impl Alignment {
+    /// Aligns the events of two motions, those of each name in their order. Slow impacts may have no
+    /// others, nor has what is undone within a `short` time.
+    pub fn new(events: [&[Happening]; 2], short: f64) -> Self {
+        let mut alignment = Self::default();
+        let names: BTreeSet<&str> = (events.into_iter().flatten())
+            .map(|event| event.name.as_str())
+            .collect();
+        for name in names {
+            let of_name = events.map(|events| {
+                let places = events.iter().enumerate();
+                let places = places.filter(|(_, event)| event.name == name);
+                places.map(|(place, _)| place).collect::<Vec<_>>()
+            });
+            alignment.add(events, [&of_name[0], &of_name[1]], short);
+        }
+        alignment
+    }
+
+    /// Aligns the events at some places.
+    fn add(&mut self, events: [&[Happening]; 2], places: [&[usize]; 2], short: f64) {
+        let mut at = [0, 0];
+        loop {
+            let here = [0, 1].map(|side| {
+                let rest = &places[side][at[side]..];
+                rest.iter()
+                    .map(|place| &events[side][*place])
+                    .collect::<Vec<_>>()
+            });
+            let firsts = [here[0].first(), here[1].first()];
+            let is_same = match firsts {
+                [None, None] => return,
+                [Some(one), Some(other)] => is_same(one, other),
+                _ => false,
+            };
+            if is_same {
+                self.pairs.push([places[0][at[0]], places[1][at[1]]]);
+                at = at.map(|at| at + 1);
+                continue;
+            }
+            let skipped = [0, 1].map(|side| skipped(&here[side], short));
+            match skipped {
+                [0, 0] => {
+                    let mut odd: Vec<_> = firsts.into_iter().flatten().collect();
+                    odd.sort_by(|a, b| a.time.total_cmp(&b.time));
+                    let time = odd[0].time;
+                    if self.odd.as_ref().is_none_or(|(first, _)| time < *first) {
+                        let words = firsts.map(|event| event.map(|event| event.told()));
+                        self.odd = Some((time, format!("{words:?}")));
+                    }
+                    return;
+                }
+                [0, more] => at[1] += more,
+                [more, 0] => at[0] += more,
+                // The earlier one.
+                [one, other] => match here[0][0].time <= here[1][0].time {
+                    true => at[0] += one,
+                    false => at[1] += other,
+                },
+            }
+        }
+    }
+}
+
+/// Returns whether two events of the same name may be one.
+fn is_same(one: &Happening, other: &Happening) -> bool {
+    let is_same_kind = std::mem::discriminant(&one.kind) == std::mem::discriminant(&other.kind);
+    let slower = one.speed().min(other.speed());
+    let faster = one.speed().max(other.speed());
+    is_same_kind && (!one.is_impact() || slower > SLOW || faster < 2.0 * SLOW)
+}
+
+/// Returns how many events may be passed over.
+fn skipped(events: &[&Happening], short: f64) -> usize {
+    match events {
+        [first, ..] if first.speed() < 2.0 * SLOW => 1,
+        [first, second, ..] if is_undone(first, second, short) => 2,
+        _ => 0,
+    }
+}
+
+/// Returns whether an event undoes the one before it at once.
+fn is_undone(first: &Happening, second: &Happening, short: f64) -> bool {
+    let is_opposite = matches!(
+        [first.kind, second.kind],
+        [EventKind::Leaves, EventKind::Rests]
+            | [EventKind::Rests, EventKind::Leaves]
+            | [EventKind::Slides, EventKind::Sticks]
+            | [EventKind::Sticks, EventKind::Slides]
+    );
+    is_opposite && second.time - first.time < short
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(time: f64, kind: EventKind) -> Happening {
+        Happening {
+            time,
+            name: "stop".to_owned(),
+            kind,
+        }
+    }
+
+    fn impact(time: f64, speed: f64) -> Happening {
+        event(time, EventKind::Impact { speed })
+    }
+
+    #[test]
+    fn slow_impacts_and_short_rests_need_no_other() {
+        let one = [
+            impact(0.1, 1.0),
+            impact(0.2, 0.006),
+            impact(0.21, 0.001),
+            event(0.22, EventKind::Rests),
+            event(0.5, EventKind::Leaves),
+        ];
+        let other = [
+            impact(0.1, 1.0),
+            impact(0.2, 0.0049),
+            event(0.22, EventKind::Rests),
+            event(0.3, EventKind::Leaves),
+            event(0.300_001, EventKind::Rests),
+            event(0.5, EventKind::Leaves),
+        ];
+        let alignment = Alignment::new([&one, &other], 1e-4);
+        assert_eq!(alignment.odd, None);
+        assert_eq!(alignment.pairs, [[0, 0], [1, 1], [3, 2], [4, 5]]);
+    }
+
+    #[test]
+    fn an_impact_that_is_missed_is_odd() {
+        let one = [impact(0.1, 1.0), event(0.2, EventKind::Rests)];
+        let other = [event(0.2, EventKind::Rests)];
+        let alignment = Alignment::new([&one, &other], 1e-4);
+        assert_eq!(alignment.odd.map(|(time, _)| time), Some(0.1));
+    }
+}
