@@ -96,7 +96,14 @@ class Mechanism:
     ) -> tuple[list[tuple[list[float], float]], bool]: ...
     def linearize(
         self, motions: _Motions, parameters: _Values, columns: Sequence[int], balance: bool
-    ) -> tuple[list[float], list[float], list[str], list[str], list[list[float]]]: ...
+    ) -> tuple[
+        list[float],
+        list[float],
+        list[str],
+        list[str],
+        list[list[float]],
+        list[tuple[str, float, str]],
+    ]: ...
     def draw(
         self,
         motions: _Motions,

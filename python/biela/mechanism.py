@@ -374,6 +374,8 @@ class Mechanism:
         """Linearizes the motion of freedoms at the start, exactly.
 
         With `balance` the mechanism goes to the stable equilibrium downhill from there first.
+        Closed contacts and friction that sticks hold their coordinates in these equations: a
+        warning tells each, and `held` has them.
         `variables` narrows the outputs, as for `run`.
 
         >>> space = pendulum.linearize(balance=True, variables=["rod.phi"])
@@ -381,9 +383,12 @@ class Mechanism:
         [5.424942 5.424942]
         """
         names, _, indices = self._chosen(variables)
-        drivers, q, states, inputs, matrices = self._inner.linearize(
+        drivers, q, states, inputs, matrices, held = self._inner.linearize(
             self._start(drive), _given(parameters), indices, balance
         )
+        for _, _, text in held:
+            notice = f"{text}: what is held does not move in these equations"
+            warnings.warn(notice, MechanismWarning, stacklevel=2)
         shapes = [(len(rows), len(columns)) for rows in (states, names) for columns in (states, inputs)]
         return StateSpace(
             tuple(states),
@@ -392,6 +397,7 @@ class Mechanism:
             *(np.reshape(matrix, shape) for matrix, shape in zip(matrices, shapes)),
             dict(zip(self.drivers, drivers)),
             dict(zip(self.bodies, np.reshape(q, (-1, 3)))),
+            {name: force for name, force, _ in held},
         )
 
     def draw(

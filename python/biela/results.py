@@ -373,6 +373,9 @@ class StateSpace:
     """Values of drivers and freedoms at the pose [m or rad]."""
     pose: dict[str, NDArray]
     """x, y and phi of each body at the pose."""
+    held: dict[str, float]
+    """Closed contacts and friction that sticks, with the force along the coordinate that each holds
+    [N or N m]: what is held does not move in these equations."""
 
     @property
     def matrices(self) -> tuple[NDArray, NDArray, NDArray, NDArray]:

@@ -28,8 +28,17 @@ use crate::timing::FreeDriver;
 /// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
 /// these are all.
 type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
-/// Values of drivers, q, names of states and of inputs, and A, B, C and D by rows.
-type LinearRow = (Vec<f64>, Vec<f64>, Vec<String>, Vec<String>, [Vec<f64>; 4]);
+/// Name, force and description of what holds a coordinate.
+type HeldRow = (String, f64, String);
+/// Values of drivers, q, names of states and of inputs, A, B, C and D by rows, and what holds.
+type LinearRow = (
+    Vec<f64>,
+    Vec<f64>,
+    Vec<String>,
+    Vec<String>,
+    [Vec<f64>; 4],
+    Vec<HeldRow>,
+);
 
 /// Times, and motions of drivers.
 type Motions = (Vec<f64>, Vec<(String, Drive)>);
@@ -321,7 +330,8 @@ impl Mechanism {
     }
 
     /// Linearizes the free motion at the start of a motion, or at the equilibrium downhill from it;
-    /// returns the drivers' values, q, the names of states and inputs, and A, B, C and D by rows.
+    /// returns the drivers' values, q, the names of states and inputs, A, B, C and D by rows, and name, force
+    /// and description of what holds.
     fn linearize(
         &self,
         py: Python<'_>,
@@ -338,6 +348,12 @@ impl Mechanism {
             runner.start(&self.in_force(parameters)?)?;
             let space = runner.linearize(&outputs, balance)?;
             let matrices = space.matrices().map(|rows| rows.concat());
+            let held = space.held.iter().map(|held| {
+                let mechanism = runner.solver.mechanism();
+                let name = held.name(mechanism).to_owned();
+                (name, held.size, held.describe(mechanism))
+            });
+            let held = held.collect();
             let pose = runner.solver.pose();
             Ok((
                 pose.drivers.clone(),
@@ -345,6 +361,7 @@ impl Mechanism {
                 space.states,
                 space.inputs,
                 matrices,
+                held,
             ))
         })
     }

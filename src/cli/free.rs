@@ -6,8 +6,8 @@ use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
 use super::signals::Signals;
-use crate::dynamics::{self, FreeMotion, StateSpace};
-use crate::kinematics::{Output, Pose, Solution, Solver};
+use crate::dynamics::{self, Equilibrium, FreeMotion, StateSpace};
+use crate::kinematics::{Output, Solution, Solver};
 use crate::mechanism::CoordinateKind;
 
 /// Lets the freedoms of a mechanism, if it has some, move by the forces from the solver's pose on.
@@ -99,7 +99,7 @@ impl AtRest {
     }
 
     /// Moves to the stable equilibrium downhill.
-    pub(super) fn balance(&mut self) -> Result<(), Error> {
+    pub(super) fn balance(&mut self) -> Result<Equilibrium, Error> {
         let held = self.solver.pose().drivers.clone();
         let part = self.signals.part(self.solver.pose().time, &held);
         let balanced = (self.free).balance(&mut self.solver, &mut self.solution, &part);
@@ -107,7 +107,7 @@ impl AtRest {
     }
 
     /// Finds the stable equilibria downhill from places all over the range of the freedoms.
-    pub(super) fn balances(&mut self) -> Result<Vec<Pose>, Error> {
+    pub(super) fn balances(&mut self) -> Result<Vec<Equilibrium>, Error> {
         let held = self.solver.pose().drivers.clone();
         let part = self.signals.part(self.solver.pose().time, &held);
         let balances = (self.free).balances(&mut self.solver, &mut self.solution, &part);

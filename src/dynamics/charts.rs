@@ -35,6 +35,9 @@ const FAR: f64 = 10.0;
 /// Part of the mechanism's size below which a distance is the worse a coordinate the smaller it is: it
 /// has a corner at zero, which the motion leaves behind in some steps from there.
 const NEAR_ZERO: f64 = 0.1;
+/// Freedoms of the file that move by no more than such a part of the best coordinates are at a dead
+/// point: half of the digits of what is expressed in them would be lost.
+const NO_COORDINATES: f64 = 1e-8;
 
 /// Returns whether the freedoms of a mechanism are good coordinates wherever it moves: each body is
 /// placed by straight formulas, or the only one turns fully and passes no change point. An end of the
@@ -168,6 +171,14 @@ impl Charts {
         &self.current
     }
 
+    /// Returns the values of the candidates in use at a solver's pose.
+    pub(super) fn values(&self, solver: &Solver) -> Vec<f64> {
+        let still = Rates::new(solver.pose().q.len());
+        let relations = self.current.iter().map(|k| &*self.candidates[*k].relation);
+        let values = relations.map(|relation| solver.coordinate(relation, &still).value);
+        values.collect()
+    }
+
     /// Returns the natural size of the first components of x, for a mechanism of this size \[m\]: a
     /// radian or the size for values, the same per second for velocities. The others, work and
     /// derivatives, are left out of error control.
@@ -199,9 +210,8 @@ impl Charts {
             true => (bodies, &self.all),
             false => (joints, &self.of_joints),
         };
-        let uses_own = self.current.iter().enumerate().all(|(k, own)| k == *own);
         let returns = uses_bodies && bodies <= far * joints;
-        let chosen = if !uses_own && self.own.choose(&self.changes) >= RETURN * volume {
+        let chosen = if !self.uses_own() && self.own.choose(&self.changes) >= RETURN * volume {
             self.own.chosen.clone()
         } else if volume > EXCHANGE || returns {
             best.chosen.clone()
@@ -209,6 +219,17 @@ impl Charts {
             return None;
         };
         (!self.unfit.contains(&chosen)).then_some(chosen)
+    }
+
+    /// Returns whether the file's freedoms are in use.
+    pub(super) fn uses_own(&self) -> bool {
+        self.current.iter().enumerate().all(|(k, own)| k == *own)
+    }
+
+    /// Returns whether the file's freedoms are coordinates at the pose of these equations.
+    pub(super) fn own_is_fit(&mut self, solver: &Solver, equations: &EquationsOfMotion) -> bool {
+        self.differentiate(solver, equations, 0..self.freedoms.len());
+        self.own.choose(&self.changes) > NO_COORDINATES
     }
 
     /// Writes the changes of some candidates.

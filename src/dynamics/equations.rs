@@ -142,6 +142,12 @@ impl Equations {
         equations
     }
 
+    /// Returns whether the freedoms move the coordinate of a passive force where the equations are.
+    pub(super) fn moves(&self, force: usize) -> bool {
+        let mut freedoms = self.freedoms.iter();
+        freedoms.any(|id| self.passive.rows[(force, id.index())] != 0.0)
+    }
+
     /// Returns the number of forces that are inputs.
     pub(super) fn inputs(&self) -> usize {
         self.point.loads.len() - self.passive.loads()

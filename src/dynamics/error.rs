@@ -63,6 +63,12 @@ pub enum Error {
     /// The mechanism comes to no rest.
     #[error("no stable equilibrium was found from the start: downhill motion comes to no rest")]
     NoEquilibrium,
+    /// The freedoms are no coordinates at a pose.
+    #[error(
+        "the equilibrium is at a dead point of the freedoms' coordinates, which are no states there; \
+         give the freedoms other coordinates"
+    )]
+    DeadPoint,
     /// The integrator finds no step.
     #[error("the free motion cannot go on: {0}")]
     Integrator(String),

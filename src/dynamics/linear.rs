@@ -1,13 +1,17 @@
-//! Linearisation at a pose, and static equilibrium.
+//! Linearisation at a pose.
+//!
+//! Closed contacts and friction that sticks hold their coordinates c: c̈ = 0, and the only velocities
+//! are those with ċ = 0 (Haug's coordinate partitioning once more): one freedom per held coordinate
+//! depends on the others, that which moves the coordinate most. Its velocity follows from theirs and from
+//! the drivers', and a change of its own counts for nothing. A held coordinate stays wherever it is,
+//! which gives A two zero eigenvalues.
 
-use std::f64::consts::TAU;
-
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 use super::error::Error;
-use super::given::Given;
+use super::held::Held;
 use super::motion::FreeMotion;
-use crate::kinematics::{Curve, Direction, Output, Path, Pose, Solution, Solver};
+use crate::kinematics::{Direction, Output, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, Mechanism, Order};
 
 /// The linear equations of small motions about a pose: δẋ = A δx + B δu, δy = C δx + D δu.
@@ -28,6 +32,8 @@ pub struct StateSpace {
     pub c: DMatrix<f64>,
     /// ∂y/∂u \[SI\].
     pub d: DMatrix<f64>,
+    /// Contacts and friction that hold coordinates at the pose, and in these equations.
+    pub held: Vec<Held>,
 }
 
 impl StateSpace {
@@ -54,13 +60,17 @@ impl FreeMotion {
     ///
     /// # Errors
     ///
-    /// Accelerations or derivatives do not exist there.
+    /// Accelerations or derivatives do not exist there; [`Error::DeadPoint`] at a dead point of the
+    /// freedoms' coordinates.
     pub fn linearize(
         &mut self,
         solver: &mut Solver,
         solution: &mut Solution,
         outputs: &[Output],
     ) -> Result<StateSpace, Error> {
+        if !self.charts.uses_own() {
+            return Err(Error::DeadPoint);
+        }
         self.solve_accelerations(solver, solution)?;
         solution.solve(solver)?;
         let mechanism = solver.mechanism().clone();
@@ -73,6 +83,7 @@ impl FreeMotion {
             b: DMatrix::zeros(states.len(), inputs.len()),
             c: DMatrix::zeros(outputs.len(), states.len()),
             d: DMatrix::zeros(outputs.len(), inputs.len()),
+            held: self.held(),
         };
         for (column, change) in states.iter().enumerate() {
             let (rates, seen) = self.respond(solver, solution, outputs, *change)?;
@@ -115,6 +126,7 @@ impl FreeMotion {
                 direction.drivers[driver.index()].derivatives[order as usize - 1] = 1.0;
             }
         }
+        self.hold_velocities(solver, &solution.rates, &mut direction)?;
         self.complete(solver, &solution.rates, &mut direction, &mut loads)?;
         let freedoms = self.freedoms().iter();
         let rates = freedoms.flat_map(|id| direction.drivers[id.index()].derivatives);
@@ -129,161 +141,62 @@ impl FreeMotion {
         Ok((rates, DVector::from_vec(seen?)))
     }
 
-    /// Moves the mechanism, with all inputs held, from the solver's pose to a stable equilibrium, downhill
-    /// in steps of Newton's method. The freedoms are at rest there.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NoEquilibrium`] if none is found.
-    pub fn balance(
-        &mut self,
+    /// Changes the velocities of dependent freedoms in a direction so that held coordinates rest.
+    fn hold_velocities(
+        &self,
         solver: &mut Solver,
-        solution: &mut Solution,
-        given: &impl Given,
+        rates: &Rates,
+        direction: &mut Direction,
     ) -> Result<(), Error> {
-        /// Steps far beyond those of any mechanism that has an equilibrium.
-        const MOST_STEPS: usize = 200;
-        /// Longest change of an angle \[rad\] or of a length, in sizes of the mechanism.
-        const LONGEST: f64 = 0.3;
-        /// A step below this is rounding.
-        const AT_REST: f64 = 1e-13;
-        /// Part of the scales by which the mechanism leaves an unstable equilibrium.
-        const ASIDE: f64 = 0.01;
-        let scales = self.scales();
-        let aside = ASIDE * DVector::from_column_slice(&scales);
-        let count = scales.len();
-        for _ in 0..MOST_STEPS {
-            self.restart(solver, given, |_| 0.0)?;
-            self.tell(solution);
-            let space = self.linearize(solver, solution, &[])?;
-            let inertia = self.inertia();
-            let accelerations = self.accelerations();
-            let slopes = DMatrix::from_fn(count, count, |i, j| space.a[(2 * i + 1, 2 * j)]);
-            let stiffness = -(&inertia * slopes);
-            let stiffness = 0.5 * (&stiffness + stiffness.transpose());
-            let force = &inertia * accelerations;
-            let step = downhill(&stiffness, &inertia, &force);
-            let longest = step
-                .iter()
-                .zip(&scales)
-                .fold(0.0, |longest: f64, (step, scale)| {
-                    longest.max((step / scale).abs())
-                });
-            if longest <= AT_REST {
-                match way_down(&stiffness) {
-                    Some(way) => self.go_by(solver, &(way.component_mul(&aside)))?,
-                    None => return Ok(()),
-                }
-                continue;
+        /// A pivot of this part of the largest partial derivative is rounding: the coordinate depends
+        /// on others that are held.
+        const DEPENDENT: f64 = 1e-9;
+        let (passive, freedoms) = (&self.equations.passive, self.freedoms());
+        let held = (0..passive.list.len()).filter(|k| passive.is_held(*k));
+        let held: Vec<usize> = held.collect();
+        if held.is_empty() {
+            return Ok(());
+        }
+        let sensitivity = solver.sensitivity(rates, self.drivers(), direction)?;
+        let change = |k: usize| sensitivity.coordinate(&*passive.list[k].relation).first();
+        let (count, scales) = (freedoms.len(), self.scales());
+        // ∂c/∂u by scales, and the rates that are to be taken out.
+        let mut rows = DMatrix::from_fn(held.len(), count + 1, |row, column| {
+            match freedoms.get(column) {
+                Some(id) => passive.rows[(held[row], id.index())] * scales[column],
+                None => -change(held[row]),
             }
-            let part = (LONGEST / longest).min(1.0);
-            self.go_by(solver, &(step * part))?;
-        }
-        Err(Error::NoEquilibrium)
-    }
-
-    /// Finds the stable equilibria to which the mechanism comes down, with all inputs held, from places
-    /// all over the range of its freedoms that it reaches from the solver's pose: around each angle,
-    /// and as far along each length. There may be others.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NoEquilibrium`] if none is found.
-    pub fn balances(
-        &mut self,
-        solver: &mut Solver,
-        solution: &mut Solution,
-        given: &impl Given,
-    ) -> Result<Vec<Pose>, Error> {
-        /// Places along one freedom: a maximum of the energy, or a dead point, stands between two
-        /// equilibria, and three of each in a turn are many.
-        const MOST_PLACES: usize = 6;
-        /// Places in all.
-        const MOST_STARTS: usize = 6 * 6 * 6;
-        let home = solver.pose().clone();
-        let scales = self.scales();
-        let freedoms = u32::try_from(scales.len()).unwrap_or(u32::MAX);
-        let fits = |places: &usize| {
-            let starts = places.checked_pow(freedoms);
-            starts.is_some_and(|starts| starts <= MOST_STARTS)
-        };
-        let places = (2..=MOST_PLACES).rev().find(fits).unwrap_or(1);
-        let starts = places.checked_pow(freedoms).unwrap_or(1);
-        let mut found: Vec<Pose> = Vec::new();
-        for start in 0..starts {
-            solver.restore(&home);
-            let mut rest = start;
-            let changes = scales.iter().map(|scale| {
-                let place = rest % places;
-                rest /= places;
-                // From the middle alternately to both sides.
-                let steps = place.div_ceil(2) as f64 * if place % 2 == 0 { 1.0 } else { -1.0 };
-                TAU / places as f64 * scale * steps
-            });
-            let changes = DVector::from_iterator(scales.len(), changes);
-            // A way that is blocked ends in front of the obstacle.
-            let _ = self.go_by(solver, &changes);
-            if self.balance(solver, solution, given).is_ok()
-                && !found.iter().any(|pose| solver.is_near(pose))
-            {
-                found.push(solver.pose().clone());
+        });
+        let rounding = DEPENDENT * rows.columns(0, count).amax();
+        let mut is_used = vec![false; held.len()];
+        let mut dependent = Vec::new();
+        for _ in 0..held.len() {
+            let places = (0..held.len()).filter(|row| !is_used[*row]);
+            let places = places.flat_map(|row| (0..count).map(move |column| (row, column)));
+            let size = |place: (usize, usize)| rows[place].abs();
+            let Some(pivot) = places.max_by(|a, b| size(*a).total_cmp(&size(*b))) else {
+                break;
+            };
+            if size(pivot) <= rounding {
+                break;
             }
+            let (row, column) = pivot;
+            is_used[row] = true;
+            let of_row = rows.row(row) / rows[pivot];
+            for other in (0..held.len()).filter(|other| *other != row) {
+                let factor = rows[(other, column)];
+                let mut others = rows.row_mut(other);
+                others -= &of_row * factor;
+            }
+            rows.set_row(row, &of_row);
+            dependent.push(pivot);
         }
-        match found.is_empty() {
-            true => Err(Error::NoEquilibrium),
-            false => Ok(found),
+        for (row, column) in dependent {
+            let velocity = &mut direction.drivers[freedoms[column].index()].derivatives[0];
+            *velocity += rows[(row, count)] * scales[column];
         }
+        Ok(())
     }
-
-    /// Moves the mechanism by changes of the freedoms' values.
-    fn go_by(&self, solver: &mut Solver, changes: &DVector<f64>) -> Result<(), Error> {
-        let mut path = Path::new(solver.mechanism());
-        let pose = solver.pose();
-        path.start = pose.time;
-        path.from.copy_from_slice(&pose.parameters);
-        path.to.copy_from_slice(&pose.parameters);
-        for (curve, now) in path.curves.iter_mut().zip(&pose.drivers) {
-            *curve = Curve::held(*now, *now);
-        }
-        for (freedom, change) in self.freedoms().iter().zip(changes) {
-            let now = pose.drivers[freedom.index()];
-            path.curves[freedom.index()] = Curve::held(now + change, now);
-        }
-        solver.track(&path).map(|_| ()).map_err(|blocked| {
-            let pose = solver.pose();
-            Error::Blocked(blocked.describe(solver.mechanism(), pose, None, |_| true))
-        })
-    }
-}
-
-/// Returns the direction in which an equilibrium with this stiffness is unstable most, if it is.
-fn way_down(stiffness: &DMatrix<f64>) -> Option<DVector<f64>> {
-    /// A negative stiffness of this part of the largest is rounding: the equilibrium is neutral.
-    const NEUTRAL: f64 = 1e-9;
-    let eigen = stiffness.clone().symmetric_eigen();
-    let (least, value) = eigen.eigenvalues.argmin();
-    let unstable = value < -NEUTRAL * eigen.eigenvalues.amax();
-    unstable.then(|| eigen.eigenvectors.column(least).into_owned())
-}
-
-/// Returns the step that solves (K + μ M) δ = Q with the least μ of a few for which the matrix is
-/// positive definite: downhill also where the equilibrium nearby is unstable.
-fn downhill(
-    stiffness: &DMatrix<f64>,
-    inertia: &DMatrix<f64>,
-    force: &DVector<f64>,
-) -> DVector<f64> {
-    /// Shifts by factors of four lead from rounding to far beyond the stiffness.
-    const MOST_SHIFTS: usize = 60;
-    let ratio = (stiffness.amax() / inertia.amax()).max(1e-9);
-    let mut shift = 0.0;
-    for _ in 0..MOST_SHIFTS {
-        if let Some(factor) = Cholesky::new(stiffness + inertia * shift) {
-            return factor.solve(force);
-        }
-        shift = f64::max(4.0 * shift, 1e-3 * ratio);
-    }
-    force / (shift * inertia.amax())
 }
 
 /// Returns the inputs: sizes of forces, then those of drivers.

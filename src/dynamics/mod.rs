@@ -28,8 +28,13 @@
 //! | `variations` | the changes of a motion along directions |
 //! | `trials` | the system that the integrator steps |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
-//! | `linear` | its linearisation at a pose; static equilibrium |
+//! | `held` | [`Held`]: what holds coordinates, in words |
+//! | `linear` | its linearisation at a pose |
+//! | `statics` | forces and stiffness at rest |
+//! | `balance` | static equilibrium |
+//! | `explore` | the search for several equilibria |
 
+mod balance;
 mod bounded;
 mod charts;
 mod choose;
@@ -37,9 +42,11 @@ mod energy;
 mod equations;
 mod error;
 mod event;
+mod explore;
 mod function;
 mod gaps;
 mod given;
+mod held;
 mod impact;
 pub mod integrator;
 mod linear;
@@ -48,15 +55,18 @@ mod passive;
 mod settle;
 mod stages;
 mod state;
+mod statics;
 mod trials;
 mod triangular;
 mod variations;
 mod watch;
 
+pub use balance::Equilibrium;
 pub use charts::keeps_coordinates;
 pub use error::Error;
 pub use event::{Event, EventKind};
 pub use given::Given;
+pub use held::Held;
 pub use linear::StateSpace;
 pub use motion::FreeMotion;
 pub use passive::{Mode, Passive};

@@ -5,7 +5,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::charts::Charts;
 use super::equations::Equations;
@@ -36,14 +36,14 @@ const MOST_EVENTS: u32 = 20_000;
 /// It moves a [`Solver`] of the mechanism, whose pose it expects where it left it.
 #[derive(Debug)]
 pub struct FreeMotion {
-    equations: Equations,
+    pub(super) equations: Equations,
     integrator: Integrator,
     tolerance: f64,
     /// The mechanism's size at the start \[m\].
     size: f64,
-    charts: Charts,
+    pub(super) charts: Charts,
     /// Values and velocities of the freedoms, and the work done since the energy was noted.
-    x: Vec<f64>,
+    pub(super) x: Vec<f64>,
     /// Energy of the bodies without that of springs when the work was zero \[J\].
     energy: f64,
     /// Events that nobody has read.
@@ -145,6 +145,11 @@ impl FreeMotion {
             .map_err(unusable)
     }
 
+    /// Controls errors in the coordinates in use, after a change of these.
+    pub(super) fn renew_control(&mut self) -> Result<(), Error> {
+        self.set_control(self.tolerance)
+    }
+
     /// Returns the natural size of each freedom's value.
     pub(super) fn scales(&self) -> Vec<f64> {
         self.charts.scales(self.size, self.freedoms().len())
@@ -157,16 +162,6 @@ impl FreeMotion {
         let index = |k: usize| self.freedoms()[k].index();
         let count = self.freedoms().len();
         DMatrix::from_fn(count, count, |i, j| inertia[(index(i), index(j))])
-    }
-
-    /// Returns the accelerations of the freedoms at the accepted point.
-    pub(super) fn accelerations(&self) -> DVector<f64> {
-        let drivers = self.drivers();
-        let accelerations = self
-            .freedoms()
-            .iter()
-            .map(|id| drivers[id.index()].second());
-        DVector::from_iterator(self.freedoms().len(), accelerations)
     }
 
     /// Returns the integrator's work.
@@ -238,7 +233,7 @@ impl FreeMotion {
             let why = "its coordinates are none of this mechanism";
             return Err(Error::Integrator(why.to_owned()));
         }
-        self.set_control(self.tolerance)
+        self.renew_control()
     }
 
     /// Goes on from a state of the same mechanism, with the solver [of its coordinates](Self::select)
@@ -586,7 +581,7 @@ impl FreeMotion {
         if !charts.exchange(solver, equations, solution, coordinates, x)? {
             return Ok(false);
         }
-        self.set_control(self.tolerance)?;
+        self.renew_control()?;
         self.go_on(solver, given)?;
         Ok(true)
     }
@@ -614,7 +609,7 @@ impl FreeMotion {
 }
 
 /// Writes the values of the freedoms at a pose.
-fn write_start(freedoms: &[DriverId], pose: &Pose, x: &mut [f64]) {
+pub(super) fn write_start(freedoms: &[DriverId], pose: &Pose, x: &mut [f64]) {
     for (x, freedom) in x.iter_mut().zip(freedoms) {
         *x = pose.drivers[freedom.index()];
     }

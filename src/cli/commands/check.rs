@@ -110,7 +110,7 @@ impl Check {
                 print("\nnot assembled; the nearest pose\n")?;
                 print(&describe_bodies(&solver))?;
                 if self.estimates {
-                    print(&estimates(&solver))?;
+                    print(&estimates(solver.mechanism(), &solver.pose().q))?;
                 }
             }
             return refuse(error);
@@ -136,7 +136,7 @@ impl Check {
             print(&mention_modes(&solver, &modes))?;
         }
         if self.estimates {
-            print(&estimates(&solver))?;
+            print(&estimates(solver.mechanism(), &solver.pose().q))?;
         }
         if self.modes {
             let modes = solver.modes().map_err(|error| input.error(error))?;
@@ -412,8 +412,8 @@ fn describe_play(mechanism: &Arc<Mechanism>, error: &kinematics::Error) -> Strin
 }
 
 /// Returns the pose as estimates, with a heading.
-pub(super) fn estimates(solver: &Solver) -> String {
-    let lines = as_estimates(solver.mechanism(), &solver.pose().q);
+pub(super) fn estimates(mechanism: &Mechanism, q: &[f64]) -> String {
+    let lines = as_estimates(mechanism, q);
     format!("\nestimates of this pose, to paste into the tables of the bodies\n\n{lines}")
 }
 

@@ -9,6 +9,7 @@ use crate::cli::column::Output;
 use crate::cli::conditions::Conditions;
 use crate::cli::error::Error;
 use crate::cli::free::AtRest;
+use crate::cli::message::Message;
 use crate::cli::output::write;
 use crate::cli::stdout::STDOUT;
 
@@ -16,7 +17,8 @@ use crate::cli::stdout::STDOUT;
 ///
 /// Writes the names of states, inputs and outputs and the matrices A, B, C and D of
 /// dx/dt = A x + B u, y = C x + D u in SI units, exact to rounding, as JSON. States are value and
-/// velocity of each freedom.
+/// velocity of each freedom. Closed contacts and friction that sticks hold their coordinates in these
+/// equations; they are told, and listed under `held` with their forces.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela linearize pendulum_free.toml --balance -v rod")]
 pub(in crate::cli) struct Linearize {
@@ -54,6 +56,15 @@ impl Linearize {
             outputs = Output::named(&outputs, &self.variables, &mechanism)?;
         }
         let space = at.linearize(&outputs)?;
+        for held in &space.held {
+            let what = held.describe(&mechanism);
+            Message::Note(format!(
+                "{what}: what is held does not move in these equations"
+            ))
+            .show();
+        }
+        let held = space.held.iter();
+        let held = held.map(|held| (held.name(&mechanism).to_owned(), json!(held.size)));
         let drivers = mechanism.drivers.iter().zip(&at.solver.pose().drivers);
         let values = drivers.map(|(driver, value)| (driver.name.clone(), json!(value)));
         let [a, b, c, d] = space.matrices();
@@ -62,6 +73,7 @@ impl Linearize {
             "states": space.states,
             "inputs": space.inputs,
             "outputs": space.outputs,
+            "held": Value::Object(held.collect()),
             "A": a,
             "B": b,
             "C": c,

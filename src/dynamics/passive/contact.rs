@@ -56,6 +56,10 @@ impl Cause for Contact {
         std::array::from_fn(|_| touched.next().flatten())
     }
 
+    fn is_contact(&self) -> bool {
+        true
+    }
+
     fn restitution(&self, solver: &Solver) -> f64 {
         let parameters = &solver.pose().parameters;
         self.cause.restitution(solver.mechanism(), parameters)

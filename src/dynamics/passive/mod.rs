@@ -181,6 +181,11 @@ pub(super) trait Cause: Debug + Send + Sync {
         [None; 2]
     }
 
+    /// Returns whether it is a contact, which pushes.
+    fn is_contact(&self) -> bool {
+        false
+    }
+
     /// Returns its place among all friction.
     fn friction(&self) -> Option<usize> {
         None

@@ -15,9 +15,11 @@
 //! | `unseen` | events between the ends of a step |
 //! | `play` | ropes, cams and wheels that open |
 //! | `joint_friction` | friction that grows with the reaction of its joint |
+//! | `balance` | static equilibrium and linear equations on stops and with friction |
 //! | `chains` | random chains with stops and friction |
 //! | `state` | saved and restored |
 
+mod balance;
 mod chains;
 mod closed_form;
 mod dead_points;

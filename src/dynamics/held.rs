@@ -1,0 +1,63 @@
+//! Contacts and friction that hold coordinates, in words.
+
+use super::motion::FreeMotion;
+use crate::mechanism::{Force, JointKind, Mechanism, shown};
+
+/// A contact that pushes, or friction that sticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// Index of its force in the mechanism.
+    pub force: usize,
+    /// The force along its coordinate \[N or N m\]: the output `….effort` of a stop and of friction.
+    pub size: f64,
+    /// Force up to which friction sticks \[N or N m\], `None` for a contact.
+    pub limit: Option<f64>,
+}
+
+impl Held {
+    /// Returns the name of the stop, the joint or the friction.
+    #[must_use]
+    pub fn name<'a>(&self, mechanism: &'a Mechanism) -> &'a str {
+        &mechanism.forces[self.force].name
+    }
+
+    /// Describes what holds, with its force.
+    #[must_use]
+    pub fn describe(&self, mechanism: &Mechanism) -> String {
+        let Force { name, load, .. } = &mechanism.forces[self.force];
+        let coordinate = load.coordinate();
+        let kind = coordinate.expect("it acts along a coordinate").kind;
+        let unit = kind.effort_unit().suffix();
+        let (size, push) = (shown(self.size), shown(self.size.abs()));
+        let joint = load.play().map(|joint| &mechanism.joints[joint].kind);
+        match (self.limit, joint) {
+            (Some(limit), _) => format!(
+                "friction `{name}` sticks, {size}{unit} of up to {}{unit}",
+                shown(limit)
+            ),
+            (None, None) => format!("on stop `{name}`, {push}{unit}"),
+            (None, Some(JointKind::Rope(_))) => format!("rope `{name}` is taut, {push}{unit}"),
+            (None, Some(_)) => format!("the parts of joint `{name}` touch, {push}{unit}"),
+        }
+    }
+}
+
+impl FreeMotion {
+    /// Returns the contacts and frictions that hold coordinates at the accepted point.
+    #[must_use]
+    pub fn held(&self) -> Vec<Held> {
+        self.acting(|k| self.equations.passive.is_held(k) && self.equations.moves(k))
+    }
+
+    /// Returns some passive forces at the accepted point.
+    pub(super) fn acting(&self, some: impl Fn(usize) -> bool) -> Vec<Held> {
+        let passive = &self.equations.passive;
+        let points = self.equations.accepted.passive.iter().enumerate();
+        let held = points.filter(|(k, _)| some(*k)).map(|(k, at)| Held {
+            force: passive.list[k].index,
+            size: at.force,
+            limit: passive.list[k].cause.friction().map(|_| at.bounds[1]),
+        });
+        held.collect()
+    }
+}
