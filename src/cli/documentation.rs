@@ -343,9 +343,9 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
         let limits = match range {
             None if driver.motion().is_some() => "prescribed by the file: no input".to_owned(),
             None => format!("biela range --driver {} finds them", driver.name),
-            Some(Range { upper, lower, .. }) => match upper {
-                End::Turns(1) => "turns fully".to_owned(),
-                End::Turns(turns) => {
+            Some(Range { upper, lower, .. }) => match (lower, upper) {
+                (End::Turns(_), End::Turns(1)) => "turns fully".to_owned(),
+                (End::Turns(_), End::Turns(turns)) => {
                     format!("turns fully; the mechanism is back after {turns} turns")
                 }
                 _ => {

@@ -83,6 +83,23 @@ impl Input {
         let solver = Solver::assembled(Arc::clone(&self.mechanism), &path);
         solver.map_err(|error| self.error(offer_start(error, &self.mechanism)))
     }
+
+    /// Refuses a start at which the mechanism cannot even rest, such as one at a jump of an equation.
+    pub(super) fn check_rest(&self, solver: &mut Solver) -> Result<(), Error> {
+        let file = || self.source.name().to_owned();
+        cannot_rest(solver).map_or(Ok(()), |why| Err(Error::Stopped { file: file(), why }))
+    }
+}
+
+/// Says why the mechanism cannot rest where the solver has assembled it at the file's own values; an
+/// FMU of it does not initialise. The pose stays.
+pub(super) fn cannot_rest(solver: &mut Solver) -> Option<String> {
+    let mechanism = Arc::clone(solver.mechanism());
+    let home = solver.pose().clone();
+    let blocked = solver.track(&Path::new(&mechanism)).err();
+    solver.restore(&home);
+    let why = blocked?.describe(&mechanism, &home, Some(home.time), |_| true);
+    Some(format!("an FMU does not initialise: {why}"))
 }
 
 /// Warns on stderr of joints whose geometry does not fit the solver's pose, and of redundant ones.

@@ -53,7 +53,8 @@ pub fn keeps_coordinates(mechanism: &Arc<Mechanism>) -> bool {
     }
     let range = solver.range(DriverId(0), &RangeSettings::default());
     let turns = |end: &End| matches!(end, End::Turns(_));
-    turns(&range.lower) && turns(&range.upper) && range.crossings.is_empty()
+    // A turn one way passes all poses of the other way.
+    (turns(&range.lower) || turns(&range.upper)) && range.crossings.is_empty()
 }
 
 /// The charts of a mechanism.

@@ -169,6 +169,38 @@ pub enum Error {
         /// A driver and a value of it beside a singular start, in words.
         aside: Option<String>,
     },
+    /// Coordinates of an equation move in too large a ratio.
+    #[error(
+        "{origin}: `{far}` moves {} times as far as `{near}`, in radians and sizes of the mechanism; \
+         the solver takes {} times and more for held: give them a coordinate in between, with an \
+         equation to each of them",
+        shown(*.ratio), shown(*.largest)
+    )]
+    Ratio {
+        /// The joint.
+        origin: String,
+        /// Names of the coordinates that move farthest, and least far.
+        far: String,
+        /// Likewise.
+        near: String,
+        /// Ratio of their ways.
+        ratio: f64,
+        /// The least ratio that is too large.
+        largest: f64,
+    },
+    /// The arc of a rope on a pulley comes to an angle beyond which it is not counted.
+    #[error(
+        "joint `{rope}`: the arc of the rope on its pulley at `{pulley}` is {:.1} deg; arcs are \
+         counted from -45 to 315 deg", angle.to_degrees()
+    )]
+    RopeArc {
+        /// Name of the rope's joint.
+        rope: String,
+        /// Marker at the pulley's centre, with its body.
+        pulley: String,
+        /// The angle \[rad\].
+        angle: f64,
+    },
     /// Values have no limit at a change point, or none that is known.
     #[error(
         "{of} have no limit at the change point with driver `{driver}` at {value}, where {geometry}: \

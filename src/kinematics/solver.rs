@@ -69,7 +69,8 @@ impl Solver {
         let (mut compiled, pairs_up) = CompiledMechanism::new(mechanism);
         let mut state = State::new(&compiled.system);
         if !pairs_up {
-            redundancy::choose_rows(&mut compiled, &mut state, &path)?;
+            let chosen = redundancy::choose_rows(&mut compiled, &mut state, &path);
+            chosen.map_err(|error| redundancy::explain_ratio(&compiled, &state, error))?;
         }
         Ok(Self {
             tracker: PathTracker::new(&compiled),
@@ -142,12 +143,18 @@ impl Solver {
     /// [`Error::NotAssembled`] with the joints that stay open, and a proof that the mechanism
     /// cannot close, if there is one; [`Error::Singular`] if it closes in a singular position;
     /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism;
+    /// [`Error::Ratio`] instead of these where coordinates move in too large a ratio;
     /// [`Error::BeyondStop`] for a pose beyond a stop. The solver is then without a valid pose until
     /// it is assembled or [restored](Self::restore); after the first of these its pose is the
     /// nearest one.
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
-        let assembly = initial_pose::assemble(&mut self.compiled, &mut self.state, path)?;
-        check_pose(&self.compiled, &self.state)?;
+        let Self {
+            compiled, state, ..
+        } = self;
+        let assembly = initial_pose::assemble(compiled, state, path);
+        let assembly =
+            assembly.map_err(|error| redundancy::explain_ratio(compiled, state, error))?;
+        check_pose(compiled, state)?;
         Ok(assembly)
     }
 

@@ -1,7 +1,14 @@
 //! Curves of a body, along which a point of another one moves.
 
+use super::expression::seams;
 use super::spline::{Ends, Spline};
-use super::{Expression, Interval, Jet3, ParameterId, Taylor};
+use super::{Expression, Interval, Jet3, Number, ParameterId, Taylor};
+
+/// Angle between two directions that count as one \[rad\]: rounding beside a smooth join is 1e-12 of
+/// the curvature. Halved or doubled, a corner of a millionth of a radian is one or none.
+const STRAIGHT: f64 = 1e-6;
+/// Part of a curve before its first point that is examined, too.
+const SEAM_AT_ENDS: f64 = 1e-3;
 
 /// Curve of a body, in the frame of a marker.
 ///
@@ -39,18 +46,58 @@ impl CurveShape {
     pub(crate) fn at(&self, parameter: &impl Fn(ParameterId) -> f64, place: f64) -> [Jet3; 2] {
         match self {
             Self::Points(path) => path.at(place),
-            Self::Formula { x, y, ends } => {
-                let [first, last] = ends.each_ref().map(|end| end.evaluate(parameter, 0.0));
-                let way = last - first;
-                let variable = Jet3::linear(first + way * place, way);
-                let parameter = |id| Jet3::constant(parameter(id));
-                [x, y].map(|component| component.evaluate(&parameter, variable))
-            }
+            Self::Formula { x, y, ends } => Self::along([x, y], ends, parameter, place),
         }
+    }
+
+    /// Returns x and y of a formula at a place, or bounds of them over a range of places.
+    fn along<S: Number>(
+        components: [&Expression; 2],
+        ends: &[Expression; 2],
+        parameter: &impl Fn(ParameterId) -> f64,
+        place: S,
+    ) -> [Jet3<S>; 2] {
+        let [first, last] = ends.each_ref().map(|end| end.evaluate(parameter, 0.0));
+        let way = S::constant(last - first);
+        let variable = Jet3::linear(S::constant(first) + way * place, way);
+        let parameter = |id| Jet3::constant(parameter(id));
+        components.map(|component| component.evaluate(&parameter, variable))
     }
 }
 
 impl Curve {
+    /// Returns the first place, from 0 to 1, at which the direction of the curve jumps. A
+    /// spline has no such place.
+    pub(in crate::mechanism) fn corner(
+        &self,
+        parameter: &impl Fn(ParameterId) -> f64,
+    ) -> Option<f64> {
+        let CurveShape::Formula { x, y, ends } = &self.shape else {
+            return None;
+        };
+        let is_smooth = |part: Interval| {
+            let at = CurveShape::along([x, y], ends, parameter, part);
+            at.iter().all(|c| c.second().is_finite())
+        };
+        let mut corner = None;
+        // From before the first point, for a corner where a closed curve comes back.
+        let first = if self.closed { -SEAM_AT_ENDS } else { 0.0 };
+        seams(Interval::new(first, 1.0), is_smooth, |[from, to]| {
+            let [before, after] = [from, to].map(|place| self.shape.at(parameter, place));
+            let [before, after] = [before, after].map(|[x, y]| [x.first(), y.first()]);
+            let across = before[0] * after[1] - before[1] * after[0];
+            let along = before[0] * after[0] + before[1] * after[1];
+            let turn = across.atan2(along).abs();
+            // Beyond the ends there may be no curve.
+            let is_straight = turn.is_nan() || turn <= STRAIGHT;
+            if !is_straight {
+                corner = Some(from.midpoint(to).max(0.0));
+            }
+            is_straight
+        });
+        corner
+    }
+
     /// Returns the parameters that it uses; one may come twice.
     pub(crate) fn parameters(&self) -> impl Iterator<Item = ParameterId> {
         let formula = match &self.shape {

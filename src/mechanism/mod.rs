@@ -64,10 +64,10 @@ pub use coupling::{CoordinateEquation, MOST_COUPLED};
 pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub(crate) use expression::Values;
 #[cfg(feature = "cli")]
 pub(crate) use expression::is_taken;
 pub use expression::{Expression, ExpressionError, LinearForm, Variable};
+pub(crate) use expression::{Values, joins};
 #[cfg(feature = "page")]
 pub(crate) use expression::{constant, names_in};
 pub use force::{

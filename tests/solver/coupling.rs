@@ -161,6 +161,42 @@ fn a_motion_stops_where_a_law_jumps() {
     assert!((solver.pose().q[5] - 1.25 / 4.0).abs() < 1e-15);
 }
 
+/// A ratio is solved, or refused by its name: in radians and sizes, here 1 m, up to a million.
+#[test]
+fn a_ratio_too_large_is_named() {
+    for (equation, far) in [
+        ("b = 1e9*a", "b"),
+        ("a = 1e-9*b", "b"),
+        ("b = 1e9*sin(a)", "b"),
+        ("1e8*b = a", "a"),
+        ("b = 3e7*a", "b"),
+    ] {
+        let law = format!("tie = {{ type = 'coupling', equation = '{equation}' }}");
+        let solver = Solver::assembled(arms(&law), &Path::new(&arms(&law)));
+        match solver {
+            Err(Error::Ratio { far: named, .. }) => assert_eq!(named, far, "{equation}"),
+            Err(other) => panic!("{equation}: {other}"),
+            Ok(mut solver) => {
+                // It follows the driver to rounding then.
+                let mut path = Path::new(solver.mechanism());
+                straight_to(&solver, &mut path, 1.0);
+                solver.track(&path).expect(equation);
+                let b = solver.pose().q[5];
+                assert!(
+                    (b - 1e-8).abs() <= 8.0 * f64::EPSILON * 1e-8,
+                    "{equation}: {b}"
+                );
+            }
+        }
+    }
+    // A coordinate in between divides it.
+    let law = "tie = { type = 'coupling', equation = 'b = 1e5*a' }";
+    let (mut solver, mut path) = assembled(&arms(law));
+    straight_to(&solver, &mut path, 1.0);
+    solver.track(&path).expect("it turns");
+    assert!((solver.pose().q[5] - 1e5).abs() <= 8.0 * f64::EPSILON * 1e5);
+}
+
 /// Parts of an equation that jump in opposite ways at different times do not cancel, even where a step
 /// passes both.
 #[test]

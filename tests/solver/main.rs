@@ -30,3 +30,4 @@ mod start;
 mod stepping;
 mod stops;
 mod verdicts;
+mod whole_turns;

@@ -121,6 +121,48 @@ fn gears_come_back_after_some_turns() {
     assert_eq!(range.samples.len(), 721);
 }
 
+/// An angle counts turns: a stop on one side of it ends one way, and leaves the other open.
+#[test]
+fn a_stop_on_one_side_ends_one_way() {
+    let crank = |stop: &str, limits: &str| {
+        parse(&format!(
+            "format = 1\nname = 'crank'\n[ground.markers]\nO = [0, 0]\n[bodies.crank]\n\
+             markers = {{ O = [0, 0] }}\n[joints]\n\
+             O = {{ type = 'revolute', markers = ['ground.O', 'crank.O'] }}\n[drivers]\n\
+             turn = {{ coordinate = 'angle', markers = ['ground.O', 'crank.O'], start = 0.5{limits} \
+             }}\n{stop}"
+        ))
+    };
+    let range = |stop: &str, limits: &str| {
+        let (mut solver, _) = assembled(&crank(stop, limits));
+        let range = solver.range(DriverId(0), &RangeSettings::default());
+        (range.lower, range.upper)
+    };
+    let stopped = |end: &End, at: f64| matches!(end, End::Stop { value, limit } if limit.stop == "end" && (value - at).abs() < 1e-12);
+    // Near the start, and some turns away.
+    for at in [-0.1, -20.0] {
+        let (lower, upper) = range(&format!("[stops]\nend = {{ of = 'turn', min = {at} }}"), "");
+        assert!(
+            stopped(&lower, at) && upper == End::Turns(1),
+            "{lower:?}, {upper:?}"
+        );
+        let (lower, upper) = range("", &format!(", min = {at}"));
+        assert_eq!((lower, upper), (End::Bound { value: at }, End::Turns(1)));
+    }
+    for at in [0.6, 20.0] {
+        let (lower, upper) = range(&format!("[stops]\nend = {{ of = 'turn', max = {at} }}"), "");
+        assert!(
+            lower == End::Turns(1) && stopped(&upper, at),
+            "{lower:?}, {upper:?}"
+        );
+        let (lower, upper) = range("", &format!(", max = {at}"));
+        assert_eq!((lower, upper), (End::Turns(1), End::Bound { value: at }));
+    }
+    // A stop that no turn changes ends none.
+    let still = "[stops]\nend = { coordinate = 'x', markers = ['ground.O', 'crank.O'], min = -1 }";
+    assert_eq!(range(still, ""), (End::Turns(1), End::Turns(1)));
+}
+
 #[test]
 fn a_length_that_nothing_blocks_is_followed_far() {
     let mechanism = parse(

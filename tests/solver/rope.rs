@@ -1,6 +1,6 @@
 //! Ropes: lengths and radii that move, and pulleys that ropes leave.
 
-use biela::kinematics::Curve;
+use biela::kinematics::{Curve, Error, GeometryWarningKind, Reason};
 
 use crate::common::{assembled, parse, shipped, straight_to};
 
@@ -126,5 +126,53 @@ fn a_rope_that_winds_up_stops_where_its_arc_ends() {
     );
     let (mut solver, mut path) = assembled(&mechanism);
     path.curves[0] = Curve::held(7.0, 0.0);
-    assert!(solver.track(&path).is_err());
+    let blocked = solver.track(&path).expect_err("the arc ends at 315 deg");
+    let Reason::Value(Error::RopeArc {
+        rope,
+        pulley,
+        angle,
+    }) = &blocked.reason
+    else {
+        panic!("{blocked:?}")
+    };
+    assert_eq!([rope, pulley], ["rope", "ground.F"]);
+    assert!((angle.to_degrees() - 315.0).abs() < 1e-3, "{angle}");
+    // Unwound, the arc ends at -45 deg.
+    let now = solver.pose().drivers[0];
+    path.curves[0] = Curve::held(now - 7.0, now);
+    let blocked = solver.track(&path).expect_err("the arc ends at -45 deg");
+    let is_named =
+        matches!(&blocked.reason, Reason::Value(Error::RopeArc { angle, .. }) if *angle < 0.0);
+    assert!(is_named, "{blocked:?}");
+}
+
+/// Two points at one place leave the rope no direction, whether they rest or come there by chance.
+#[test]
+fn a_rope_over_points_at_one_place_is_named() {
+    for (markers, [from, to]) in [
+        (
+            "'ground.A', 'ground.C', 'block.P'",
+            ["ground.A", "ground.C"],
+        ),
+        (
+            "'ground.A', { marker = 'ground.B', radius = 0.2, side = 'left' }, \
+             { marker = 'ground.D', radius = 0.05, side = 'left' }, 'block.P'",
+            ["ground.B", "ground.D"],
+        ),
+    ] {
+        let mechanism = parse(&format!(
+            "format = 1\nname = 'knot'\n[ground.markers]\nA = [0, 0]\nB = [1, 0]\nC = [0, 0]\n\
+             D = [1, 0.1]\nV = [0.5, 0, '90*deg']\n[bodies.block]\nmarkers = {{ P = [0, 0] }}\n\
+             estimate = [0.5, -0.5, '90*deg']\n[joints]\n\
+             way = {{ type = 'translational', markers = ['ground.V', 'block.P'] }}\n\
+             knot = {{ type = 'rope', markers = [{markers}], length = 2.5 }}\n"
+        ));
+        let (solver, _) = assembled(&mechanism);
+        let warnings = solver.geometry_warnings();
+        let expected = GeometryWarningKind::NoTangent {
+            markers: [from.to_owned(), to.to_owned()],
+        };
+        let is_named = warnings.iter().any(|warning| warning.kind == expected);
+        assert!(is_named, "{markers}: {warnings:?}");
+    }
 }

@@ -123,6 +123,7 @@ impl Check {
             Message::Warning(excursion).show();
         }
         print(&describe_pose(&mut solver))?;
+        input.check_rest(&mut solver)?;
         if mechanism.has_freedoms() {
             let at = AtRest::start(input.source.name(), input.assemble()?, Signals::default());
             print(&describe_free_motion(&mut at?)?)?;

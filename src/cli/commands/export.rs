@@ -211,9 +211,10 @@ pub(in crate::cli) fn version(text: &str) -> Result<Version, String> {
     }
 }
 
-/// Returns a solver at the file's own pose; warns of misfits there.
+/// Returns a solver at the file's own pose, where the mechanism can rest; warns of misfits there.
 fn assemble(input: &Input) -> Result<Solver, Error> {
-    let solver = input.assemble()?;
+    let mut solver = input.assemble()?;
+    input.check_rest(&mut solver)?;
     warn_of_misfits(&solver);
     Ok(solver)
 }

@@ -221,7 +221,7 @@ fn describe(
     let name = &of_driver.name;
     let gap = if text.is_empty() { "" } else { "\n" };
     let _ = writeln!(text, "{gap}{name}, from {}", value(start));
-    if let End::Turns(turns) = range.upper {
+    if let [End::Turns(turns), End::Turns(_)] = [&range.upper, &range.lower] {
         let turns = match turns {
             1 => "a turn".to_owned(),
             turns => format!("{turns} turns"),
@@ -314,6 +314,7 @@ pub(in crate::cli) fn end_text(end: &End, driver: &Driver, id: DriverId) -> Stri
         End::Blocked { value: at, reason } => {
             let reason = match reason {
                 Reason::Value(error) => error.to_string(),
+                Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
                 Reason::TooLong => "it takes too many sub-steps".to_owned(),
                 Reason::NearSingular => {
                     "it takes too many sub-steps next to a singular position".to_owned()

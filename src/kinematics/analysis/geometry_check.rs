@@ -67,6 +67,11 @@ pub enum GeometryWarningKind {
         /// First and last polar angle of each part that is not convex \[rad\].
         ranges: Vec<[f64; 2]>,
     },
+    /// A rope has no direction between two points, or no tangent between two pulleys.
+    NoTangent {
+        /// The markers, with their bodies.
+        markers: [String; 2],
+    },
     /// A rope does not touch its pulley.
     OffPulley {
         /// Marker at the pulley's centre, with its body.
@@ -120,6 +125,13 @@ impl fmt::Display for GeometryWarning {
                 f,
                 "a flat face cannot follow the contour where it is hollow: {}",
                 degrees(ranges)
+            ),
+            GeometryWarningKind::NoTangent {
+                markers: [from, to],
+            } => write!(
+                f,
+                "the rope has no direction from `{from}` to `{to}`: they are at one place, or the \
+                 pulley of one is inside that of the other; leave one of them out"
             ),
             GeometryWarningKind::OffPulley { pulley, angle } => write!(
                 f,
@@ -197,6 +209,16 @@ pub(in crate::kinematics) fn geometry_warnings(
         })
         .collect();
     let mechanism = compiled.system.mechanism();
+    let legs = compiled.system.ropes().flat_map(|(joint, rope)| {
+        let legs = rope.without_tangent(&state.at);
+        legs.map(move |markers| (joint, markers))
+    });
+    warnings.extend(legs.map(|(joint, markers)| GeometryWarning {
+        joint: mechanism.joints[joint].name.clone(),
+        kind: GeometryWarningKind::NoTangent {
+            markers: markers.map(|marker| mechanism.marker_path(marker)),
+        },
+    }));
     let off = arcs(&compiled.system, state).filter(|(.., angle)| *angle < -TOLERANCE);
     warnings.extend(off.map(|(joint, marker, angle)| GeometryWarning {
         joint: mechanism.joints[joint].name.clone(),

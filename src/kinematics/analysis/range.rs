@@ -1,6 +1,6 @@
 //! The range of motion of one driver, the others being held.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::transmission::Passages;
 use crate::kinematics::continuation::{PathTracker, Reason};
@@ -43,7 +43,7 @@ pub struct Extreme {
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
     /// None: after this many turns of the driver the mechanism is at its start again, whole turns
-    /// of its bodies apart.
+    /// of its bodies apart, and no nearer to a limit of a coordinate that counts turns.
     Turns(u32),
     /// A singular position, located to rounding; as a rule a dead point.
     Singular(Box<SingularPoint>),
@@ -171,6 +171,7 @@ pub(in crate::kinematics) fn range(
         driver,
         settings,
         start: &start,
+        ends_behind: false,
         passages: Passages::new(compiled),
         rates: Rates::new(start.q.len()),
         compiled,
@@ -182,12 +183,13 @@ pub(in crate::kinematics) fn range(
     explorer.restore();
     let here = explorer.place();
     let mut samples = Vec::new();
-    let lower = if let End::Turns(turns) = upper {
-        End::Turns(turns)
-    } else {
-        let lower = explorer.explore(-1.0, &mut samples);
-        explorer.restore();
-        lower
+    let lower = match upper {
+        End::Turns(turns) if !explorer.ends_behind => End::Turns(turns),
+        _ => {
+            let lower = explorer.explore(-1.0, &mut samples);
+            explorer.restore();
+            lower
+        }
     };
     samples.reverse();
     samples.push(here);
@@ -222,6 +224,9 @@ struct Explorer<'a> {
     /// Values of the driver that end the range, if there are any.
     bounds: [Option<f64>; 2],
     start: &'a Pose,
+    /// Whether turns the other way would come to a limit: a bound, or a stop of a coordinate that
+    /// counts turns.
+    ends_behind: bool,
     passages: Passages,
     rates: Rates,
     crossings: Vec<ChangePoint>,
@@ -252,6 +257,7 @@ impl Explorer<'_> {
         }
         let mut count = 0_u32;
         let mut off = 0.0_f64;
+        let at_start = self.stop_values();
         loop {
             let before = self.state.pose.drivers[index];
             count += 1;
@@ -282,7 +288,10 @@ impl Explorer<'_> {
                 let turns = count / per_turn;
                 let system = &self.compiled.system;
                 let mut turned = self.state.whole_turns_since(system, self.start);
-                if end.is_none() && turned.all(|turns| turns.is_some()) {
+                let is_back = end.is_none() && turned.all(|turns| turns.is_some());
+                let [ends_ahead, ends_behind] = self.comes_to_stops(&at_start);
+                if is_back && !ends_ahead {
+                    self.ends_behind = behind.is_some() || ends_behind;
                     return End::Turns(turns);
                 }
                 if turns >= self.settings.turns {
@@ -290,6 +299,38 @@ impl Explorer<'_> {
                 }
             }
         }
+    }
+
+    /// Returns the coordinates of all stops \[m or rad\].
+    fn stop_values(&self) -> Vec<f64> {
+        let stops = self.compiled.stops.iter();
+        stops
+            .map(|stop| stop.relation.value(&self.state.at))
+            .collect()
+    }
+
+    /// Returns whether whole turns that go on as those since `start` come to a stop, and whether whole
+    /// turns the other way do: a coordinate that counts turns has its limits once only.
+    fn comes_to_stops(&self, start: &[f64]) -> [bool; 2] {
+        let mechanism = self.compiled.system.mechanism();
+        let stops = self
+            .compiled
+            .stops
+            .iter()
+            .zip(self.stop_values())
+            .zip(start);
+        stops.fold([false; 2], |[ahead, behind], ((stop, now), start)| {
+            let [least, most] = stop.limits(mechanism, &self.start.parameters);
+            let [below, above] = [least.is_finite(), most.is_finite()];
+            let gained = now - start;
+            if gained.abs() < PI {
+                [ahead, behind]
+            } else if gained > 0.0 {
+                [ahead || above, behind || below]
+            } else {
+                [ahead || below, behind || above]
+            }
+        })
     }
 
     /// Moves the driver to a value and adds the poses on the way to the samples. Returns the end of

@@ -22,7 +22,7 @@
 //!
 //! A test is *proved* unless [`StepBounds::checked`] says that some bound in it was an estimate:
 //! the norm of an inverse that is too large to be written down, or a row set aside that depends on a
-//! contour where pieces of this meet.
+//! function of the file where pieces of this meet.
 
 mod parameters;
 #[cfg(test)]
@@ -30,7 +30,7 @@ mod tests;
 
 use nalgebra::Vector2;
 
-pub(super) use parameters::{Change, LARGEST_JUMP, ParameterBounds};
+pub(super) use parameters::{Change, LARGEST_JUMP, PASSED_AT_ONCE, ParameterBounds};
 
 use super::system::System;
 use crate::kinematics::newton::Rejected;

@@ -30,7 +30,11 @@ use crate::mechanism::{
 pub(in crate::kinematics) const LARGEST_JUMP: f64 = 0.1;
 /// Part of a path in which a number that is not known to be continuous counts as lying between its
 /// values at both ends: the smallest sub-steps are less than twice [`SMALLEST_SUBSTEP`].
-const PASSED_AT_ONCE: f64 = 2.0 * SMALLEST_SUBSTEP;
+pub(in crate::kinematics) const PASSED_AT_ONCE: f64 = 2.0 * SMALLEST_SUBSTEP;
+/// Change of each parameter up to which that holds as well, in units of the parameter, or of its
+/// magnitude where that is more: parts of a number jump together within some roundings, from which a
+/// short path may not lead away. Halved or doubled, it is still many roundings, and no motion.
+const PASSED_BY_ROUNDING: f64 = 1e-12;
 
 /// Bounds of the numbers in the equations over a sub-step.
 #[derive(Debug, Default)]
@@ -177,14 +181,24 @@ fn bend_within(quantity: &Enclosed, largest_jump: f64) -> f64 {
     }
 }
 
-/// Returns the bounds of a number over a narrow part of the path: between its values at both ends,
-/// unless it is known to be continuous. Those of a wider part stay.
+/// Returns whether a number counts as lying between its values at both ends of a part of a path.
+fn is_passed_at_once(path: &Path, [start, end]: [f64; 2]) -> bool {
+    let mut ends = path.from.iter().zip(&path.to);
+    let unit = |from: f64, to: f64| 1.0_f64.max(from.abs()).max(to.abs());
+    end - start <= PASSED_AT_ONCE
+        || ends.all(|(from, to)| {
+            (to - from).abs() * (end - start) <= PASSED_BY_ROUNDING * unit(*from, *to)
+        })
+}
+
+/// Returns the bounds of a number over a part of the path that is passed at once: between its values
+/// at both ends, unless it is known to be continuous. Those of a wider part stay.
 fn between_ends(
     number: Enclosed,
-    [start, end]: [f64; 2],
+    is_passed_at_once: bool,
     ends: impl FnOnce() -> [f64; 2],
 ) -> Enclosed {
-    if end - start > PASSED_AT_ONCE || number.first().is_finite() {
+    if !is_passed_at_once || number.first().is_finite() {
         return number;
     }
     let [from, to] = ends().map(Enclosed::constant);
@@ -304,6 +318,7 @@ impl ParameterBounds {
         part: [f64; 2],
     ) -> bool {
         let mechanism = system.mechanism();
+        let is_passed_at_once = is_passed_at_once(path, part);
         self.move_parameters(mechanism, [before, now], path, part);
         let Self {
             local,
@@ -317,7 +332,7 @@ impl ParameterBounds {
         let changed = |p: ParameterId| changed[p.index()];
         let number = |expression: &Expression| {
             let ends = || [before, now].map(|end| expression.value(end));
-            between_ends(evaluate(expression, local), part, ends)
+            between_ends(evaluate(expression, local), is_passed_at_once, ends)
         };
         let changed_number = |expression: &Expression| {
             let mut used = expression.parameters();
@@ -378,8 +393,9 @@ impl ParameterBounds {
             *parameter = Enclosed::linear(range, slope);
         }
         mechanism.derive_parameters(&mut now);
+        let is_passed_at_once = is_passed_at_once(path, [start, end]);
         for (now, (from, to)) in now.iter_mut().zip(before.iter().zip(after)) {
-            *now = between_ends(*now, [start, end], || [*from, *to]);
+            *now = between_ends(*now, is_passed_at_once, || [*from, *to]);
         }
         for ((local, changed), now) in self.local.iter_mut().zip(&mut self.changed).zip(&now) {
             *changed = now.varies() || now != local;

@@ -7,7 +7,8 @@ use super::gradient::Gradient;
 use super::moving_configuration::{Enclosed, Moving, Varied, VariedMechanism, bend};
 use super::region::Region;
 use crate::mechanism::{
-    Dual, Expression, Interval, Jet, MOST_COUPLED, Mechanism, Number, ParameterId, Values, Variable,
+    Dual, Expression, Interval, Jet, MOST_COUPLED, Mechanism, Number, ParameterId, Values,
+    Variable, joins,
 };
 
 /// c = f(s₁, s₂, …), the difference of both sides of an equation between coordinates s.
@@ -69,15 +70,6 @@ impl CoupledExpression {
         }
     }
 }
-
-/// Width of a part in which pieces of a function may meet, as a part of a coordinate's range.
-const SEAM: f64 = 1.0 / (1_u64 << 26) as f64;
-/// Change of a function across a seam that is rounding, relative to its value or one.
-const JUMP: f64 = 1e-9;
-/// Most parts that wait while a range is halved down to [`SEAM`].
-const MOST_PARTS: usize = 32;
-/// Most parts that are examined: those of some ten seams.
-const MOST_LOOKS: usize = 600;
 
 /// The numbers in an expression.
 struct Inputs<'a, N, C, L> {
@@ -183,57 +175,25 @@ impl Coupling {
         })
     }
 
-    /// Returns whether f is continuous along the range of the coordinate at `place`: halves each part
-    /// that cannot be shown to be so, down to [`SEAM`], across which f must not change by more than
-    /// its slopes make it.
+    /// Returns whether f is continuous along the range of the coordinate at `place`, all others being
+    /// at their lowest.
     fn joins_along(
         &self,
         at: &Configuration,
         ranges: &[Interval; MOST_COUPLED],
         place: usize,
     ) -> bool {
-        let Interval { low, high } = ranges[place];
-        let value = |part: f64| low + part * (high - low);
-        let smooth = |[from, to]: [f64; 2]| {
+        let bounds = |part: Interval| {
             let mut numbers = ranges.map(Enclosed::fixed);
-            numbers[place] = Enclosed::variable(Interval::new(value(from), value(to)));
-            self.enclosed_at_once(at, numbers).first().is_finite()
+            numbers[place] = Enclosed::variable(part);
+            self.enclosed_at_once(at, numbers)
         };
-        let meets = |[from, to]: [f64; 2]| {
-            let [before, after] = [from, to].map(|part| {
-                let mut numbers = ranges.map(|range| Jet::constant(range.low));
-                numbers[place] = Jet::variable(value(part));
-                self.in_force(at, numbers)
-            });
-            let slope = before.first().abs() + after.first().abs();
-            let rounding = JUMP * (1.0 + before.value.abs());
-            let width = value(to) - value(from);
-            (after.value - before.value).abs() <= 2.0 * slope * width + rounding
+        let value = |s: f64| {
+            let mut numbers = ranges.map(|range| Jet::constant(range.low));
+            numbers[place] = Jet::variable(s);
+            self.in_force(at, numbers)
         };
-        // Parts still to be examined, the last one first.
-        let mut open = [[0.0, 1.0]; MOST_PARTS];
-        let mut count = 1_usize;
-        for _ in 0..MOST_LOOKS {
-            let Some(last) = count.checked_sub(1) else {
-                return true;
-            };
-            count = last;
-            let [from, to] = open[last];
-            if smooth([from, to]) {
-                continue;
-            }
-            if to - from <= SEAM || last + 2 > MOST_PARTS {
-                if !meets([from, to]) {
-                    return false;
-                }
-                continue;
-            }
-            let middle = from.midpoint(to);
-            open[last] = [middle, to];
-            open[last + 1] = [from, middle];
-            count = last + 2;
-        }
-        false
+        joins(ranges[place], bounds, value)
     }
 
     /// Returns one number per coordinate, zero beyond the last.
@@ -321,14 +281,8 @@ impl Constraint for Coupling {
         self.in_force(at, numbers).second()
     }
 
-    /// Returns whether f has pieces: a law through points, or a switch.
-    fn has_contour(&self) -> bool {
-        match &self.function {
-            CoupledFunction::Linear { .. } => false,
-            CoupledFunction::Expression(coupled) => {
-                coupled.law.is_some() || coupled.expression.has_pieces()
-            }
-        }
+    fn has_given_function(&self) -> bool {
+        matches!(self.function, CoupledFunction::Expression(_))
     }
 
     fn is_linear(&self, mechanism: &Mechanism) -> bool {

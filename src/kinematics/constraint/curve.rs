@@ -352,7 +352,7 @@ impl Constraint for OnCurve {
         Some(bend + second * v[column] * v[column])
     }
 
-    fn has_contour(&self) -> bool {
+    fn has_given_function(&self) -> bool {
         true
     }
 
@@ -449,7 +449,7 @@ impl Constraint for AlongCurve {
         Some(omega * omega + turn[1] * rate * rate)
     }
 
-    fn has_contour(&self) -> bool {
+    fn has_given_function(&self) -> bool {
         true
     }
 

@@ -121,8 +121,10 @@ pub trait Constraint:
     /// `q_dot` is as long as q.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
 
-    /// Returns whether c contains the contour of a cam, which may have pieces; all else is analytic.
-    fn has_contour(&self) -> bool {
+    /// Returns whether c contains a function that the file gives: a contour, a curve, an equation that
+    /// is not linear. It may bend anywhere without a trace elsewhere. All else is analytic, and bends
+    /// no more than circles of the mechanism's size do.
+    fn has_given_function(&self) -> bool {
         false
     }
 

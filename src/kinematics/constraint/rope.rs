@@ -10,11 +10,17 @@ use super::gradient::Gradient;
 use super::moving_configuration::{Moving, VariedMechanism, dot, quarter_turn, subtract};
 use super::point::{centripetal, point_velocity};
 use super::region::{Region, centripetal_bound, chord, speed_bound};
+use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{MarkerId, Mechanism, Number};
 
 /// Middle of the turn within which a wrapped angle is counted: from −45° to 315°, so that an arc
 /// that vanishes goes on continuously.
 const MIDDLE: f64 = 3.0 * FRAC_PI_4;
+
+/// Distance of the angle of an arc from a jump of its count at which a motion has ended there
+/// \[rad\]: it ends after sub-steps that come as near as rounding lets them. Halved or doubled, the
+/// message names the arc all the same.
+const AT_JUMP: f64 = 1e-6;
 
 /// c = Σ p_k t_k + Σ p_k r_k β_k with the number p_k of parts, the length t_k of the straight leg
 /// from point k to the next one, and the arc of angle β_k on a pulley of radius r_k.
@@ -113,6 +119,27 @@ impl RopeLength {
             let angle = arc(e(k - 1).into(), e(k).into(), side);
             (self.stations[k].marker, angle)
         })
+    }
+
+    /// Returns the legs without a tangent, by their markers: between points at one place, or pulleys of
+    /// which one is inside the other.
+    pub fn without_tangent<'a>(
+        &'a self,
+        at: &'a Configuration,
+    ) -> impl Iterator<Item = [MarkerId; 2]> + 'a {
+        self.legs().filter_map(|(stations, _)| {
+            let Leg {
+                distance, offset, ..
+            } = self.leg(stations, at);
+            let is_none = distance <= offset.abs() + NEGLIGIBLE_LENGTH;
+            is_none.then(|| stations.map(|station| station.marker))
+        })
+    }
+
+    /// Returns the pulley on which the angle of the arc \[rad\] is where its count jumps, with the angle.
+    pub fn at_jump(&self, at: &Configuration) -> Option<(MarkerId, f64)> {
+        let mut arcs = self.arcs(at);
+        arcs.find(|(_, angle)| PI - (angle - MIDDLE).abs() <= AT_JUMP)
     }
 
     /// Returns whether no motion changes a leg.

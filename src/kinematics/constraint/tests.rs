@@ -552,7 +552,7 @@ proptest! {
                     // is no enclosure.
                     let inside = bounds.low - 1e-13 <= *value && *value <= bounds.high + 1e-13;
                     prop_assert!(
-                        inside || bounds.is_undefined() && constraint.has_contour(),
+                        inside || bounds.is_undefined() && constraint.has_given_function(),
                         "{constraint:?}: {value} {bounds:?}"
                     );
                 }

@@ -1,6 +1,6 @@
 //! Bounds of the deviation of drivers from their chords during a sub-step.
 
-use crate::kinematics::certificate::{LARGEST_JUMP, ParameterBounds, StepBounds};
+use crate::kinematics::certificate::{LARGEST_JUMP, PASSED_AT_ONCE, ParameterBounds, StepBounds};
 use crate::kinematics::constraint::moving_configuration::bend;
 use crate::kinematics::path::{Curve, Path, PathDrivers, polynomial};
 use crate::kinematics::state::State;
@@ -95,10 +95,10 @@ impl Motion<'_> {
         let motions = &state.motions;
         let [begin, stop] = [path.time(start), path.time(end)];
         let duration = stop - begin;
+        let way = Interval::point(stop) - Interval::point(begin);
+        let time = Interval::new(begin, stop);
         let range = if let Some(moving) = moving {
-            let way = Interval::point(stop) - Interval::point(begin);
-            let range =
-                moving.motion(self.driver, Jet3::linear(Interval::new(begin, stop), way))?;
+            let range = moving.motion(self.driver, Jet3::linear(time, way))?;
             if range.first().is_finite() {
                 return Some(0.125 * bend(&range));
             }
@@ -110,15 +110,23 @@ impl Motion<'_> {
             if let Some(most) = motions.curvature(self.driver, begin, stop) {
                 return Some(0.125 * duration * duration * most);
             }
-            let t = Jet3::fixed(Interval::new(begin, stop));
             let parameters = &state.pose.parameters;
             let parameter = |p: ParameterId| Jet3::constant(parameters[p.index()]);
-            motions.enclose(self.driver, t, &parameter)?
+            motions.enclose(self.driver, Jet3::fixed(time), &parameter)?
         };
         // Not smooth: between the least and the largest value.
         let [from, to] = self.ends;
         let Interval { low, high } = range.value;
         let deviation = (high - from.min(to)).max(from.max(to) - low);
-        (deviation * self.row.row_scale(&state.at) <= LARGEST_JUMP).then_some(deviation)
+        let is_small = |deviation: &f64| deviation * self.row.row_scale(&state.at) <= LARGEST_JUMP;
+        // Parts of it may jump together.
+        Some(deviation).filter(is_small).or_else(|| {
+            if moving.is_some() {
+                let is_passed = end - start <= PASSED_AT_ONCE;
+                return Some((to - from).abs()).filter(|jump| is_passed && is_small(jump));
+            }
+            let pieces = motions.enclose_joined(self.driver, Jet3::linear(time, way))?;
+            Some(0.125 * bend(&pieces))
+        })
     }
 }

@@ -642,7 +642,7 @@ impl Run<'_> {
         // Sub-steps may become ever shorter in front of an invalid value.
         let ahead = self.set_values((self.s + SAME_PLACE_ON_PATH).min(1.0));
         self.return_to_pose();
-        if let Err(error) = ahead {
+        if let Err(error) = ahead.and_then(|()| self.check_ropes()) {
             return Reason::Value(error);
         }
         let moves = |driver: &Jet| (self.length * driver.first()).abs() > LARGEST_LAST_MOVE;
@@ -651,6 +651,20 @@ impl Run<'_> {
         } else {
             Reason::Lost
         }
+    }
+
+    /// Refuses a pose at which the count of an arc of a rope jumps.
+    fn check_ropes(&self) -> Result<(), Error> {
+        let system = &self.compiled.system;
+        let mut ropes = system.ropes();
+        let found = ropes.find_map(|(joint, rope)| Some((joint, rope.at_jump(&self.state.at)?)));
+        found.map_or(Ok(()), |(joint, (pulley, angle))| {
+            Err(Error::RopeArc {
+                rope: system.mechanism().joints[joint].name.clone(),
+                pulley: system.mechanism().marker_path(pulley),
+                angle,
+            })
+        })
     }
 }
 

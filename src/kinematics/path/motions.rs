@@ -61,6 +61,18 @@ impl Motions {
             .and_then(|motion| motion.enclose(t, parameter))
     }
 
+    /// Encloses a driver's value where parts of its motion jump together; see
+    /// [`MotionInForce::enclose_joined`].
+    pub(in crate::kinematics) fn enclose_joined(
+        &self,
+        driver: DriverId,
+        t: Jet3<Interval>,
+    ) -> Option<Jet3<Interval>> {
+        self.in_force[driver.index()]
+            .as_ref()
+            .and_then(|motion| motion.enclose_joined(t))
+    }
+
     /// Returns the next time after `t` at which a motion given by a table begins another piece.
     pub(in crate::kinematics) fn next_point(&self, t: f64) -> f64 {
         let motions = self.in_force.iter().flatten();

@@ -118,13 +118,13 @@ pub(in crate::kinematics) struct RedundantRows {
     pub(in crate::kinematics) first: Vec<usize>,
     /// The rows set aside at present, as many; ascending.
     pub(in crate::kinematics) now: Vec<usize>,
-    /// Those of them that depend on the contour of a cam.
-    pub(in crate::kinematics) contour_rows: Vec<ContourRow>,
+    /// Those of them that depend on a function of the file.
+    pub(in crate::kinematics) function_rows: Vec<FunctionRow>,
 }
 
-/// A row that depends on the contour of a cam, its own or one that moves its bodies.
+/// A row that depends on a function of the file, its own or one that moves its bodies.
 #[derive(Clone, Debug)]
-pub(in crate::kinematics) struct ContourRow {
+pub(in crate::kinematics) struct FunctionRow {
     pub(in crate::kinematics) row: usize,
     /// The unknowns in it.
     pub(in crate::kinematics) columns: Vec<usize>,
@@ -184,7 +184,7 @@ impl CompiledMechanism {
     pub(in crate::kinematics) fn compile(&mut self, at: &Configuration, targets: &Targets) {
         let structure = Structure::new(&self.system, &self.redundant.now);
         self.structure = structure.expect("independent rows can be paired with unknowns");
-        self.redundant.contour_rows = self.contour_rows();
+        self.redundant.function_rows = self.function_rows();
         self.plan = BlockPlan::new(&self.system, &self.structure);
         self.plan.set_parameters(&self.system, at, targets);
     }
@@ -202,23 +202,23 @@ impl CompiledMechanism {
         fits
     }
 
-    /// Returns the rows set aside that depend on the contour of a cam.
-    fn contour_rows(&self) -> Vec<ContourRow> {
+    /// Returns the rows set aside that depend on a function of the file.
+    fn function_rows(&self) -> Vec<FunctionRow> {
         let equations = self.system.equations();
-        let has_contour = |row: &usize| equations[*row].constraint.has_contour();
-        if !(0..equations.len()).any(|row| has_contour(&row)) {
+        let has_given_function = |row: &usize| equations[*row].constraint.has_given_function();
+        if !(0..equations.len()).any(|row| has_given_function(&row)) {
             return Vec::new();
         }
-        let rows = self.redundant.now.iter().map(|&row| ContourRow {
+        let rows = self.redundant.now.iter().map(|&row| FunctionRow {
             row,
             columns: self.system.incidence(row).unknowns,
         });
-        let depends = |ContourRow { row, columns }: &ContourRow| {
+        let depends = |FunctionRow { row, columns }: &FunctionRow| {
             let mut rows = self
                 .blocks_behind(columns)
                 .into_iter()
                 .flat_map(|b| &b.rows);
-            has_contour(row) || rows.any(has_contour)
+            has_given_function(row) || rows.any(has_given_function)
         };
         rows.filter(depends).collect()
     }

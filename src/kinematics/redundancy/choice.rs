@@ -158,7 +158,7 @@ fn choose_rows_near(
         all,
         first,
         now: choice.set_aside,
-        contour_rows: Vec::new(),
+        function_rows: Vec::new(),
     };
     state.compile(compiled);
     let CompiledMechanism { system, plan, .. } = &mut *compiled;

@@ -19,6 +19,7 @@
 //! | [`slip`] | explains redundant rows that are open by little |
 //! | [`contradiction`] | explains rows that cannot be satisfied together |
 //! | [`choice`] | chooses the rows that are solved |
+//! | [`ratio`] | equations of which one coordinate moves too far |
 //! | [`undriven`] | coordinates that would hold a mechanism whose drivers are too few |
 //! | [`watch`] | bounds rows set aside between the ends of a sub-step |
 
@@ -26,6 +27,7 @@ mod choice;
 mod closure;
 mod contradiction;
 mod rank;
+mod ratio;
 mod slip;
 mod undriven;
 mod watch;
@@ -36,5 +38,6 @@ pub(super) use choice::{
     redundancies,
 };
 pub(super) use rank::{drivers_first, jacobian_rows};
+pub(super) use ratio::explain_ratio;
 pub use undriven::{Undriven, undriven};
 pub(super) use watch::watch_between;

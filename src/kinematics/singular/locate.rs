@@ -45,6 +45,10 @@ const CONVERGED: f64 = 1e-13;
 /// A correction up to this length ends it as well once corrections stop falling: large angles have
 /// more rounding.
 const NEARLY: f64 = 1e-9;
+/// Least ratio of a correction to the one before that has stopped falling. At a degenerate position
+/// they fall by a half or a third each time. Halved, the search ends there at [`NEARLY`], where a cusp
+/// is not told from a dead point. At one, it goes on as long as rounding falls by chance.
+const STALLED: f64 = 0.75;
 /// Squared sine of the largest angle between two motions that count as touching.
 const TOUCHING: f64 = 1e-8;
 /// A singular value up to this part of the largest one is zero.
@@ -141,7 +145,7 @@ fn newton(
             // The last correction takes off what rounding alone does not explain.
             return Some(equation.extrapolate(point, [by_alpha, by_tau]));
         }
-        if step > 2 && length < NEARLY && length >= 0.5 * last {
+        if step > 2 && length < NEARLY && length >= STALLED * last {
             return Some(point);
         }
         // Not a number is not within reach either.

@@ -193,7 +193,7 @@ fn enter_near_crossings(
             fruitless.note(block, 0.0);
         }
         if let Finding::End(kind, point) = &finding
-            && *kind != SingularKind::DeadPoint
+            && !matches!(kind, SingularKind::DeadPoint | SingularKind::Cusp)
             && (point.tau - value) * direction > 0.0
         {
             let way = (point.tau - value).abs();

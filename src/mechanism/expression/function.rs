@@ -80,7 +80,15 @@ impl Binary {
         match self {
             Self::Atan2 => x.atan2(y),
             Self::Hypot => x.hypot(y),
-            Self::Mod => x - y * (x / y).floor(),
+            Self::Mod => {
+                let rest = x - y * (x / y).floor();
+                // Below a multiple of y by rounding.
+                if rest.is_single() && rest.real() * y.real() < 0.0 {
+                    rest - N::constant(rest.real())
+                } else {
+                    rest
+                }
+            }
             Self::Min => x.smaller(y),
             Self::Max => x.larger(y),
         }

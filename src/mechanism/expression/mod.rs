@@ -17,6 +17,7 @@ mod parse;
 mod pieces;
 mod polar;
 mod reserved;
+mod seams;
 mod token;
 
 #[cfg(test)]
@@ -34,6 +35,8 @@ pub(super) use pieces::MOST_SWITCHES;
 pub(crate) use reserved::is_taken;
 #[cfg(feature = "cli")]
 pub(super) use reserved::taken;
+pub(crate) use seams::joins;
+pub(super) use seams::seams;
 #[cfg(feature = "page")]
 pub(crate) use token::names_in;
 

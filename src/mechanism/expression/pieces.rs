@@ -69,13 +69,16 @@ impl Expression {
         jumping
     }
 
-    /// Encloses the result for these numbers on each piece that may be in force: derivatives are
-    /// those of all sides of a switch. `None` without bounds. Allocates nothing.
+    /// Encloses the result for these numbers on each piece that may be in force, and its slope on all
+    /// sides of a switch. Further derivatives are unknown, as the slope may jump there. `None` without
+    /// bounds. Allocates nothing.
     pub(crate) fn enclose_all_pieces(
         &self,
         values: &impl Values<Jet3<Interval>>,
     ) -> Option<Jet3<Interval>> {
-        self.hull_of_pieces(values, Some(MOST_SWITCHES))
+        let pieces = self.hull_of_pieces(values, Some(MOST_SWITCHES))?;
+        let unknown = Interval::unknown();
+        Some(Jet3::new(pieces.value, [pieces.first(), unknown, unknown]))
     }
 
     /// Encloses the result for these numbers on each piece that may be in force, of the first

@@ -5,7 +5,9 @@ mod moving;
 
 pub use law::Law;
 
-use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table, Variable};
+use super::{
+    Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table, Variable, joins,
+};
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
 #[derive(Clone, Debug)]
@@ -155,6 +157,20 @@ impl MotionInForce {
             }
             (Motion::Table(_), _) => None,
         }
+    }
+
+    /// Encloses the value over the range of `t` on all pieces of an expression whose parts jump
+    /// together, with derivatives with respect to the variable of evaluation. `None` where it is no
+    /// such expression, or jumps. Allocates nothing.
+    #[must_use]
+    pub fn enclose_joined(&self, t: Jet3<Interval>) -> Option<Jet3<Interval>> {
+        let Motion::Expression(expression) = &self.motion else {
+            return None;
+        };
+        let parameter = |p: ParameterId| Jet3::constant(self.parameters[p.index()].value);
+        let pieces = expression.enclose_all_pieces(&(&parameter, &|_| t))?;
+        let bounds = |part| expression.evaluate(&parameter, Jet3::variable(part));
+        joins(t.value, bounds, |t| self.evaluate(Jet::variable(t))).then_some(pieces)
     }
 
     /// Encloses the value over the range of `t` and of the parameters, with derivatives with

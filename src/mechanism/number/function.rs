@@ -35,10 +35,33 @@ pub enum Unary {
     Abs,
     /// −1, 0 or 1.
     Sign,
-    /// The largest integer not above the argument.
+    /// The largest integer not above the argument, which counts as whole to rounding.
     Floor,
-    /// The smallest integer not below the argument.
+    /// The smallest integer not below the argument, likewise.
     Ceil,
+}
+
+/// Distance from an integer at which a number counts as this integer, in units of one, or of the
+/// integer where that is more.
+///
+/// What is whole in a formula is so to the rounding of some operations: `10*t` and `t/0.1` at
+/// t = 0.3, or a sum of angles over a turn. Halved, parts of a sum that jump together at `x - 20*pi`
+/// may do so on two sides of one number. Doubled, a number 7e-15 below an integer counts as whole.
+const WHOLE: f64 = 16.0 * f64::EPSILON;
+
+/// Returns the largest integer not above x, or the next one if x is that to rounding.
+pub(super) fn floor(x: f64) -> f64 {
+    let above = x.ceil();
+    if above - x <= WHOLE * above.abs().max(1.0) {
+        above
+    } else {
+        x.floor()
+    }
+}
+
+/// Returns the smallest integer not below x, or the one before if x is that to rounding.
+pub(super) fn ceil(x: f64) -> f64 {
+    -floor(-x)
 }
 
 impl Unary {

@@ -1,6 +1,6 @@
 //! Plain numbers.
 
-use super::{Number, Unary};
+use super::{Number, Unary, function};
 
 impl Number for f64 {
     fn constant(value: f64) -> Self {
@@ -71,8 +71,8 @@ impl Number for f64 {
             // Unlike `signum`, 0 at 0.
             Unary::Sign if self == 0.0 => self,
             Unary::Sign => self.signum(),
-            Unary::Floor => self.floor(),
-            Unary::Ceil => self.ceil(),
+            Unary::Floor => function::floor(self),
+            Unary::Ceil => function::ceil(self),
         }
     }
 

@@ -404,3 +404,28 @@ shoe = {{ joint = "rail", coefficient = 0.2 }}
     insta::assert_snapshot!(slow(10.0), @"  way.effort in slow motion: 363.568 N as it grows, -22.8704 N as it falls: self-locking");
     insta::assert_snapshot!(slow(15.0), @"  way.effort in slow motion: 443.416 N as it grows, 64.3868 N as it falls");
 }
+
+/// A start at a jump of an equation closes, and no motion leads there or away.
+#[test]
+fn a_start_without_a_motion_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let jump = [("law(mod(crank_angle + pi, 2*pi) - pi)", "law(0)")];
+    let at = |start: &str| {
+        let changes = [jump[0], ("start = \"-25*deg\"", start)];
+        altered(folder.path(), "geneva_drive", &changes)
+    };
+    let file = at("start = \"180*deg\"");
+    let fmu = folder.path().join("geneva.fmu");
+    let fmu = fmu.to_str().unwrap();
+    for arguments in [
+        &["check", &file][..],
+        &["export", "--no-page", "-o", fmu, &file],
+    ] {
+        let told = stderr(&biela(arguments).code(1));
+        let wanted = "an FMU does not initialise: no continuous motion";
+        assert!(told.contains(wanted), "{told}");
+    }
+    let report = stdout(&biela(&["check", "--format", "json", &file]).code(1));
+    assert!(report.contains("an FMU does not initialise"), "{report}");
+    biela(&["check", &at("start = \"170*deg\"")]).success();
+}

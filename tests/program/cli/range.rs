@@ -403,3 +403,23 @@ fn computed_measures_have_their_range() {
         "{text}"
     );
 }
+
+/// A stop on one side of an angle that turns freely the other way.
+#[test]
+fn range_tells_a_stop_on_one_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("lid.toml");
+    let text = "format = 1\nname = 'lid'\nground.markers = { O = [0, 0] }\n\
+        bodies.lid.markers = { O = [0, 0] }\n[joints]\n\
+        O = { type = 'revolute', markers = ['ground.O', 'lid.O'] }\n[drivers]\n\
+        turn = { coordinate = 'angle', markers = ['ground.O', 'lid.O'], start = '20*deg' }\n[stops]\n\
+        closed = { of = 'turn', min = '-3*deg' }\n";
+    std::fs::write(&file, text).unwrap();
+    let told = stdout(&biela(&["range", file.to_str().unwrap()]).success());
+    for wanted in [
+        "  down to -3 deg: stop `closed` reached",
+        "  up to   no limit\n",
+    ] {
+        assert!(told.contains(wanted), "{told}");
+    }
+}

@@ -584,3 +584,23 @@ fn an_excel_file_has_the_numbers_of_the_csv() {
     assert!(refused.contains("2000001 rows of 40 columns"), "{refused}");
     assert!(before == std::fs::read(&file).unwrap());
 }
+
+/// A Geneva wheel rests where its pin is opposite of it, whole turns of the crank away too.
+#[test]
+fn a_geneva_wheel_rests_at_whole_turns() {
+    for turns in ["180*deg", "5*pi", "-5*pi", "75*pi"] {
+        let drive = format!("crank_angle = {turns}");
+        let arguments = ["run", "mechanisms/geneva_drive.toml", "--drive", &drive];
+        let told = stdout(&biela(&arguments).success());
+        let crank = column(&told, "crank_angle.position")[0];
+        // A quarter back with each turn, from -pi/4 after half a turn.
+        let wheel = -std::f64::consts::FRAC_PI_4 * (crank / std::f64::consts::PI).round();
+        let angles = column(&told, "wheel.phi");
+        // Some roundings of the angle.
+        assert!(
+            angles
+                .iter()
+                .all(|phi| (phi - wheel).abs() < 1e-14 * wheel.abs().max(1.0))
+        );
+    }
+}

@@ -7,8 +7,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::common::{assembled, parse, straight_to};
 use crate::generated::{BAR, scissor_lift};
-use biela::kinematics::{Blocked, Progress, Rates, Reason, SingularKind, Solver};
-use biela::mechanism::Jet;
+use biela::kinematics::{
+    Blocked, End, Progress, RangeSettings, Rates, Reason, SingularKind, Solver,
+};
+use biela::mechanism::{DriverId, Jet};
 
 /// Moves the first driver to a value.
 fn go(solver: &mut Solver, target: f64) -> Result<Progress, Blocked> {
@@ -215,6 +217,41 @@ fn a_cusp_is_refused() {
     let point = refused(go(&mut solver, 0.7));
     assert_eq!(point.kind, SingularKind::DeadPoint);
     assert!((point.drivers[0] - 0.6).abs() < 1e-14);
+}
+
+/// x³ = u: a slider comes to u = 0 ever faster. Place and extreme are those of the cusp.
+#[test]
+fn a_motion_ends_at_its_cusp() {
+    let text = "format = 1\nname = 'cusp'\n[ground.markers]\nO = [0, 0]\n[bodies.crank]\n\
+         markers = { O = [0, 0] }\nestimate = [0, 0, 0.3]\n[bodies.slider]\n\
+         markers = { S = [0, 0] }\nestimate = [0.67, 0, 0]\n[joints]\n\
+         O = { type = 'revolute', markers = ['ground.O', 'crank.O'] }\n\
+         S = { type = 'translational', markers = ['ground.O', 'slider.S'] }\n\
+         c = { type = 'coupling', equation = 'x^3 = u' }\n[measures]\n\
+         x = { coordinate = 'x', markers = ['ground.O', 'slider.S'] }\n[drivers]\n\
+         u = { coordinate = 'angle', markers = ['ground.O', 'crank.O'], start = 0.3 }\n";
+    let (mut solver, mut path) = assembled(&parse(text));
+    let settings = RangeSettings {
+        turns: 1,
+        ..RangeSettings::default()
+    };
+    let range = solver.range(DriverId(0), &settings);
+    let End::Singular(point) = &range.lower else {
+        panic!("{:?}", range.lower)
+    };
+    assert_eq!(point.kind, SingularKind::Cusp);
+    let [least, _] = range.measures[0];
+    // The cube root of the rounding of u = 0.3 is 4e-6; the position is found in x, to 1e-13.
+    assert!(
+        least.value.abs() < 1e-12 && least.driver.abs() < 1e-12,
+        "{least:?}"
+    );
+
+    straight_to(&solver, &mut path, -1.7);
+    let blocked = solver.track(&path).expect_err("it ends at u = 0");
+    // 0.3 of 2 radians, to the rounding of a place on a path.
+    assert!((blocked.place() - 0.15).abs() < 1e-9, "{blocked:?}");
+    assert_eq!(refused(Err(blocked)).kind, SingularKind::Cusp);
 }
 
 /// A scissor lift drawn out to its full height: each of its cells could fold to either side.

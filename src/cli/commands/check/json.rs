@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::forces::Forces;
 use super::{NEARLY_SINGULAR, equations_of_joints, excursions};
 use crate::cli::error::Error;
+use crate::cli::input::cannot_rest;
 use crate::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System, offer_start};
 use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
@@ -50,9 +51,12 @@ pub(in crate::cli) fn report_on(source: &Source, modes: bool) -> Value {
     report["diagnostics"] = diagnostics(source, &warnings);
     report["mechanism"] = describe(&mechanism);
     match assembled(&mechanism, modes) {
-        Ok(found) => {
-            report["ok"] = json!(true);
+        Ok((found, cannot_rest)) => {
+            report["ok"] = json!(cannot_rest.is_none());
             report["assembled"] = found;
+            if let Some(message) = cannot_rest {
+                report["error"] = json!({ "message": message });
+            }
         }
         Err(error) => {
             let error = offer_start(error, &mechanism);
@@ -123,8 +127,12 @@ fn describe(mechanism: &Arc<Mechanism>) -> Value {
     })
 }
 
-/// Assembles the mechanism at its start values and describes the pose.
-fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematics::Error> {
+/// Assembles the mechanism at its start values and describes the pose; also says why it cannot rest
+/// there.
+fn assembled(
+    mechanism: &Arc<Mechanism>,
+    modes: bool,
+) -> Result<(Value, Option<String>), kinematics::Error> {
     let mut solver = Solver::assembled(Arc::clone(mechanism), &Path::new(mechanism))?;
     let rcond = solver.rcond();
     let pose = solver.pose();
@@ -190,7 +198,7 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
             "others": others.collect::<Vec<_>>(),
         });
     }
-    Ok(found)
+    Ok((found, cannot_rest(&mut solver)))
 }
 
 fn gaps(joints: &[OpenJoint]) -> Value {

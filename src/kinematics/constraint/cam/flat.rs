@@ -111,7 +111,7 @@ impl Constraint for FlatContact {
         Some(bend + rate * rate + jump)
     }
 
-    fn has_contour(&self) -> bool {
+    fn has_given_function(&self) -> bool {
         true
     }
 
@@ -237,7 +237,7 @@ impl Constraint for FlatFace {
         Some(bend + 2.0 * omega * speed + omega * omega * (g.norm() + moved))
     }
 
-    fn has_contour(&self) -> bool {
+    fn has_given_function(&self) -> bool {
         true
     }
 

@@ -167,7 +167,7 @@ impl Constraint for KnifeEdge {
         Some(speed * swing + bend + r2 * rate * rate + r1 * angular)
     }
 
-    fn has_contour(&self) -> bool {
+    fn has_given_function(&self) -> bool {
         true
     }
 

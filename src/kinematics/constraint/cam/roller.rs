@@ -174,7 +174,7 @@ impl Constraint for Roller {
         Some(bend + 2.0 * turn * speed + (turn_rate + turn * turn + jump) * furthest)
     }
 
-    fn has_contour(&self) -> bool {
+    fn has_given_function(&self) -> bool {
         true
     }
 

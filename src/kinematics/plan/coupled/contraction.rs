@@ -63,17 +63,17 @@ pub(super) struct Estimate {
     pub(super) drift: Vec<(usize, usize, f64)>,
     /// F where the rows were evaluated last.
     pub(super) gap: Vec<f64>,
-    /// The rows that depend on the contour of a cam, with their unknowns.
-    pub(super) contours: Vec<(usize, Vec<usize>)>,
+    /// The rows that contain a function of the file, with their unknowns.
+    pub(super) functions: Vec<(usize, Vec<usize>)>,
 }
 
-/// Returns the rows of a block that depend on the contour of a cam, with their unknowns.
-fn contour_rows(system: &System, rows: &[usize]) -> Vec<(usize, Vec<usize>)> {
-    let contours = rows
+/// Returns the rows of a block that contain a function of the file, with their unknowns.
+fn function_rows(system: &System, rows: &[usize]) -> Vec<(usize, Vec<usize>)> {
+    let functions = rows
         .iter()
         .enumerate()
-        .filter(|(_, row)| system.equations()[**row].constraint.has_contour());
-    let with_unknowns = contours.map(|(local, &row)| {
+        .filter(|(_, row)| system.equations()[**row].constraint.has_given_function());
+    let with_unknowns = functions.map(|(local, &row)| {
         let mut unknowns = system.incidence(row).unknowns;
         unknowns.sort_unstable();
         unknowns.dedup();
@@ -111,7 +111,7 @@ impl ContractionTest {
             let estimate = Estimate {
                 drift: Vec::with_capacity(ENTRIES * n),
                 gap: vec![0.0; n],
-                contours: contour_rows(system, &order.rows),
+                functions: function_rows(system, &order.rows),
             };
             (0, estimate)
         };

@@ -18,8 +18,8 @@
 //! Two things are not bounds: norms are estimated from below, and one place represents the whole
 //! chord. The factor [`ALLOWANCE`] allows for both. The sub-step is *checked*, not proved.
 //!
-//! A contour may have a lobe or a notch between two places, so rows that depend on a contour are
-//! bounded over the whole chord. Their values on the chord are at most an eighth of the bound of
+//! A function of the file, such as a contour, may have a lobe or a notch between two places, so rows
+//! that contain one are bounded over the whole chord. Their values on the chord are at most an eighth of the bound of
 //! the second derivative along it. Their gradients differ from those at its end by at most twice
 //! the bound of their change around its middle.
 
@@ -163,11 +163,11 @@ impl CoupledBlock {
             Ok(place) => test.known_radii[place] * scale(column),
             Err(_) => radius * scale(column),
         };
-        let mut contours = test.estimate.contours.iter().peekable();
+        let mut functions = test.estimate.functions.iter().peekable();
         for local in 0..equations.rows.len() {
-            let contour = contours.next_if(|(row, _)| *row == local);
+            let function = functions.next_if(|(row, _)| *row == local);
             let (mut open, mut change) = (test.slack[local], 0.0);
-            let bend = match contour {
+            let bend = match function {
                 None => equations.bend(local, state, bounds, false)?,
                 Some((_, columns)) => {
                     for &column in columns {
@@ -182,7 +182,7 @@ impl CoupledBlock {
                     bend
                 }
             };
-            let differs = if contour.is_some() { 2.0 } else { 1.0 };
+            let differs = if function.is_some() { 2.0 } else { 1.0 };
             if let Target::Driver(driver) = state.system.equations()[equations.rows[local]].target {
                 open += 0.125 * bend.along + bounds.drivers[driver.index()] * bend.row_scale;
             }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{Interval, UNDERFLOW};
-use crate::mechanism::number::{Number, Unary};
+use crate::mechanism::number::{Number, Unary, function};
 
 /// Largest error of a function of the mathematical library in units in the last place, plus one:
 /// the GNU C library's manual lists up to 2 for these functions.
@@ -196,8 +196,9 @@ impl Number for Interval {
             Unary::Abs if self.is_undefined() => Self::UNDEFINED,
             Unary::Abs => Self::new(0.0, self.magnitude()),
             Unary::Sign => Self::new(Number::sign(self.low), Number::sign(self.high)),
-            Unary::Floor => Self::new(self.low.floor(), self.high.floor()),
-            Unary::Ceil => Self::new(self.low.ceil(), self.high.ceil()),
+            // To rounding below an integer both it and the one before may be meant.
+            Unary::Floor => Self::new(self.low.floor(), function::floor(self.high)),
+            Unary::Ceil => Self::new(function::ceil(self.low), self.high.ceil()),
         }
     }
 

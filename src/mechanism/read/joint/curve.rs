@@ -7,7 +7,9 @@ use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Flag, Item, Kind, schema};
 use crate::mechanism::read::number::{Formula, LENGTH, NUMBER, Quantity};
 use crate::mechanism::read::points::PointKeys;
-use crate::mechanism::{Curve, CurveShape, Expression, JointKind, PointPath, Span, Variable};
+use crate::mechanism::{
+    Curve, CurveShape, Expression, JointKind, PointPath, Span, Variable, shown,
+};
 
 use super::joint_type;
 
@@ -124,6 +126,23 @@ impl<'a> Context<'a> {
         Some(JointKind::Curve(curve))
     }
 
+    /// Warns of a corner of a curve with the file's parameters.
+    fn warn_of_corner(&mut self, curve: &Curve, place: &Span) {
+        let CurveShape::Formula { ends, .. } = &curve.shape else {
+            return;
+        };
+        let parameter = |id| self.known_value(id);
+        let Some(corner) = curve.corner(&parameter) else {
+            return;
+        };
+        let [first, last] = ends.each_ref().map(|end| end.evaluate(&parameter, 0.0));
+        let [x, y] = curve.shape.at(&parameter, corner).map(|c| shown(c.value));
+        let s = shown(first + (last - first) * corner);
+        let message = format!("the curve has a corner at s = {s}, x = {x} m, y = {y} m");
+        self.warn(code::BAD_PROFILE, place.clone(), message)
+            .suggest("a motion ends there: round it off");
+    }
+
     /// Refuses a curve that is none with the file's parameters.
     fn check_curve(&mut self, curve: &Curve, place: &Span) -> Option<()> {
         if !self.knows(curve.parameters()) {
@@ -168,6 +187,7 @@ impl<'a> Context<'a> {
             }
         }
         let Some(fault) = fault else {
+            self.warn_of_corner(curve, place);
             return Some(());
         };
         self.error(code::BAD_PROFILE, place.clone(), fault);
