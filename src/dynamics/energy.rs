@@ -22,7 +22,8 @@ impl Equations {
     /// thousandth and the work is integrated beside. The tolerance is relative to the kinetic energy and,
     /// for slow motions, to that of all bodies at the natural speed, the mechanism's size or a radian per
     /// second. While drivers move the work is theirs, and no error control looks after it: a step may skip
-    /// much of it.
+    /// much of it. So may a step of the stiff method, to which this does not apply, with the work of what it
+    /// damps.
     ///
     /// # Errors
     ///

@@ -442,6 +442,7 @@ impl FreeMotion {
                 equations: &mut self.equations,
                 given,
                 tolerance: self.tolerance,
+                is_stiff: false,
             };
             match self
                 .integrator
