@@ -8,7 +8,7 @@ pub struct Case {
     pub text: String,
     /// Length of the motion \[s\].
     pub duration: f64,
-    /// What holds at any time.
+    /// Invariants at any time.
     pub checks: Vec<Check>,
     /// The motion itself, in closed form.
     pub truth: Option<Truth>,

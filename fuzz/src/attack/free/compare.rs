@@ -24,12 +24,12 @@ const CHAOS: [f64; 2] = [1e-4, 1e-3];
 /// A contact that opens, or friction that slides, for this part of the motion is rounding.
 const SHORT: f64 = 1e-5;
 
-/// How far a motion with other errors may differ from a motion.
+/// Differences allowed between a motion and one with other errors.
 #[derive(Debug)]
 pub struct Sensitivity<'a> {
     base: &'a Record,
     duration: f64,
-    /// How far nudges move each event \[s\], and the speed of an impact.
+    /// Moves of each event by nudges \[s\], and the speed of an impact.
     moved: Vec<[f64; 2]>,
     /// Largest differences of places and of rates up to each row.
     grown: Vec<[f64; 2]>,

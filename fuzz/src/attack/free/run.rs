@@ -23,7 +23,7 @@ const AT_REST: f64 = 1e-7;
 /// Largest error of the force of friction, as part of its size and more.
 const FORCE: f64 = 1e-6;
 
-/// How a motion is followed.
+/// Manner in which a motion is followed.
 #[derive(Clone, Copy, Debug)]
 pub struct Manner {
     /// Relative tolerance of the integration.
@@ -61,7 +61,7 @@ pub struct Record {
     pub events: Vec<Happening>,
     /// Why it ends early.
     pub refusal: Option<Refusal>,
-    /// What does not hold, in words.
+    /// Violated invariant, in words.
     pub violation: Option<String>,
     pub evaluations: u64,
 }
@@ -114,7 +114,7 @@ struct Motion<'a> {
     held: &'a Held<'a>,
 }
 
-/// What a fresh motion needs to go on.
+/// Snapshot from which a fresh motion goes on.
 struct Saved {
     state: FreeState,
     pose: Pose,
