@@ -28,7 +28,8 @@ pub(crate) struct Run {
     /// Cause of a stop before the last row.
     #[pyo3(get)]
     stop: Option<String>,
-    /// Singular positions that were near or were passed, and contacts that begin to pull.
+    /// Singular positions that were near or were passed, parts that overlapped, and contacts that begin to
+    /// pull.
     #[pyo3(get)]
     notices: Vec<String>,
 }
@@ -83,6 +84,7 @@ pub(crate) fn run(
         stop: None,
         notices: scenario.whole_angles(),
     };
+    result.notices.extend(runner.overlaps());
     for row in 0..rows {
         if row > 0 {
             if let Err(stop) = runner.advance(row) {

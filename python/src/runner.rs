@@ -297,7 +297,18 @@ impl Runner {
         let mechanism = self.solver.mechanism();
         let events = self.free.iter_mut().flat_map(|(free, _)| free.events());
         let events = events.map(|event| event.describe(mechanism));
-        texts.chain(events).collect()
+        let mut notices: Vec<_> = texts.chain(events).collect();
+        notices.extend(self.overlaps());
+        notices
+    }
+
+    /// Returns what has overlapped since the last call, at the start or where inputs jumped.
+    pub(crate) fn overlaps(&mut self) -> Vec<String> {
+        let mechanism = self.solver.mechanism();
+        let overlaps = self.free.iter_mut().flat_map(|(free, _)| free.overlaps());
+        overlaps
+            .map(|overlap| overlap.describe(mechanism))
+            .collect()
     }
 
     /// Returns what is worth knowing of the forces at the pose: contacts that begin to pull.

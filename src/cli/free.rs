@@ -5,6 +5,7 @@ use std::path::Path;
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
+use super::message::Message;
 use super::signals::Signals;
 use crate::dynamics::{self, Equilibrium, FreeMotion, StateSpace};
 use crate::kinematics::{Output, Solution, Solver};
@@ -46,16 +47,20 @@ impl AtRest {
         Self::start(input.source.name(), solver, scenario.signals)
     }
 
-    /// Begins at a solver's pose; `file` names the mechanism in messages.
+    /// Begins at a solver's pose, and warns of parts that overlap there; `file` names the mechanism in
+    /// messages.
     pub(super) fn start(file: &str, mut solver: Solver, signals: Signals) -> Result<Self, Error> {
         let mut solution = Solution::new(&solver);
         solution.seek_forces(&solver);
         let stopped = |error: dynamics::Error| stopped(file, &error);
-        let Some(free) = release(&mut solver, &signals).map_err(stopped)? else {
+        let Some(mut free) = release(&mut solver, &signals).map_err(stopped)? else {
             return Err(Error::Usage(format!(
                 "{file}: the mechanism has no freedom: all that moves is driven"
             )));
         };
+        for overlap in free.overlaps() {
+            Message::Warning(overlap.describe(solver.mechanism())).show();
+        }
         free.tell(&mut solution);
         Ok(Self {
             file: file.to_owned(),

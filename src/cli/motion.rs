@@ -13,7 +13,7 @@ pub(super) struct Motion {
     pub(super) solver: Solver,
     pub(super) solution: Solution,
     /// Singular positions that are near or were passed, contacts that pull, drivers beyond their
-    /// limits, ropes off their pulleys: not told yet.
+    /// limits, ropes off their pulleys, parts that overlapped: not told yet.
     pub(super) notices: Vec<Message>,
     /// Times of all events of the free motion \[s\].
     pub(super) events: Vec<f64>,
@@ -64,6 +64,7 @@ impl Motion {
     pub(super) fn with_freedoms(mut self) -> Result<Self, dynamics::Error> {
         self.free = release(&mut self.solver, &self.signals)?;
         if self.free.is_some() {
+            self.tell_overlaps();
             self.solve()?;
         }
         Ok(self)
@@ -142,7 +143,9 @@ impl Motion {
                 self.events.push(event.time);
                 self.notices.push(Message::Note(event.describe(mechanism)));
             }
-            moved.map_err(|stop| stop.to_string())?;
+            let moved = moved.map_err(|stop| stop.to_string());
+            self.tell_overlaps();
+            moved?;
             self.tell_passed(time);
         }
         self.solve()
@@ -217,6 +220,14 @@ impl Motion {
             self.notices.push(Message::Note(notice));
         }
         self.watch_limits();
+    }
+
+    /// Notes parts that overlapped at the start or where inputs jumped.
+    fn tell_overlaps(&mut self) {
+        let mechanism = self.solver.mechanism();
+        let overlaps = self.free.iter_mut().flat_map(FreeMotion::overlaps);
+        let overlaps = overlaps.map(|overlap| Message::Warning(overlap.describe(mechanism)));
+        self.notices.extend(overlaps);
     }
 
     /// Notes drivers that go beyond their limits, and ropes that leave their pulleys.

@@ -75,7 +75,7 @@ impl FreeMotion {
     ) -> Result<Equilibrium, Error> {
         loop {
             self.come_down(solver, solution, given, &sticking)?;
-            self.restart(solver, given, |_| 0.0)?;
+            self.rest(solver, given)?;
             let before = sticking.len();
             sticking.retain(|k| self.rests(*k));
             if sticking.len() == before {
@@ -83,10 +83,17 @@ impl FreeMotion {
             }
         }
         if self.return_to_own(solver, solution)? {
-            self.restart(solver, given, |_| 0.0)?;
+            self.rest(solver, given)?;
         }
         self.tell(solution);
         Ok(self.equilibrium(solver, &sticking))
+    }
+
+    /// Begins at rest at the solver's pose, which is no start: nothing is told of it.
+    fn rest(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
+        self.restart(solver, given, |_| 0.0)?;
+        self.overlaps().for_each(drop);
+        Ok(())
     }
 
     /// Returns whether friction holds its coordinate at rest at the accepted point: it sticks, or exerts what it

@@ -22,22 +22,27 @@
 //! | `watch` | the search for the instants at which modes end |
 //! | `equations` | the right-hand side |
 //! | `energy` | the balance of energy of a step |
+//! | `overlap`, `apart` | [overlaps](Overlap) of parts, and the least move that brings them apart |
+//! | `corner` | corners of prescribed motions |
 //! | `impact` | velocities after impacts |
 //! | `settle` | the modes after an event |
 //! | `choose` | the choice of what is held after an event |
 //! | `variations` | the changes of a motion along directions |
 //! | `trials` | the system that the integrator steps |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
+//! | `starts` | the [start](KeptStart) that a motion keeps |
 //! | `held` | [`Held`]: what holds coordinates, in words |
 //! | `linear` | its linearisation at a pose |
 //! | `statics` | forces and stiffness at rest |
 //! | `balance` | static equilibrium |
 //! | `explore` | the search for several equilibria |
 
+mod apart;
 mod balance;
 mod bounded;
 mod charts;
 mod choose;
+mod corner;
 mod energy;
 mod equations;
 mod error;
@@ -51,9 +56,11 @@ mod impact;
 pub mod integrator;
 mod linear;
 mod motion;
+mod overlap;
 mod passive;
 mod settle;
 mod stages;
+mod starts;
 mod state;
 mod statics;
 mod trials;
@@ -69,6 +76,8 @@ pub use given::Given;
 pub use held::Held;
 pub use linear::StateSpace;
 pub use motion::FreeMotion;
+pub use overlap::Overlap;
 pub use passive::{Mode, Passive};
+pub use starts::KeptStart;
 pub use state::FreeState;
 pub use watch::event_indicators;

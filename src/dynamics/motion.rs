@@ -14,6 +14,7 @@ use super::event::Event;
 use super::function::FUNCTIONS;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
+use super::overlap::Overlap;
 use super::state::FreeState;
 use super::trials::Trials;
 use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
@@ -48,6 +49,8 @@ pub struct FreeMotion {
     energy: f64,
     /// Events that nobody has read.
     events: Vec<Event>,
+    /// Parts that overlapped, of which nobody has read.
+    overlaps: Vec<Overlap>,
 }
 
 impl FreeMotion {
@@ -101,6 +104,7 @@ impl FreeMotion {
             x,
             energy: 0.0,
             events: Vec::new(),
+            overlaps: Vec::new(),
         }))
     }
 
@@ -300,7 +304,8 @@ impl FreeMotion {
         self.equations.varied(solver, x, &mut rates)
     }
 
-    /// Begins at the solver's pose, with the velocities of the file.
+    /// Begins at the solver's pose, with the velocities of the file. Parts that overlap there are moved
+    /// [apart](Self::overlaps).
     ///
     /// # Errors
     ///
@@ -352,7 +357,8 @@ impl FreeMotion {
     }
 
     /// Moves the mechanism at once to the inputs at the present time and to `parameters`, while the
-    /// freedoms keep their values and velocities.
+    /// freedoms keep their values and velocities, unless parts overlap then and are moved
+    /// [apart](Self::overlaps).
     ///
     /// # Errors
     ///
@@ -427,6 +433,7 @@ impl FreeMotion {
         let start = self.integrator.state().t;
         let resolution = AT_END * start.abs().max((until - start).abs());
         let mut events = 0;
+        let mut corner = solver.next_corner(start, until);
         loop {
             let now = self.integrator.state().t;
             if now.to_bits() == until.to_bits() {
@@ -434,9 +441,18 @@ impl FreeMotion {
                 self.equations.watch.begin();
                 return Ok(());
             }
+            if let Some([_, behind]) = corner.filter(|[before, _]| now >= *before) {
+                self.pass_corner(solver, given, behind)?;
+                if ends_at_event {
+                    return Ok(());
+                }
+                corner = solver.next_corner(behind, until);
+                continue;
+            }
             end_of_curve = end_of_curve.filter(|end| *end > now);
             let expected = end_of_curve.or_else(|| self.equations.expected(now));
-            let goal = expected.map_or(until, |goal| goal.min(until));
+            let smooth_until = corner.map_or(until, |[before, _]| before);
+            let goal = expected.map_or(smooth_until, |goal| goal.min(smooth_until));
             let mut trials = Trials {
                 solver,
                 equations: &mut self.equations,
@@ -484,15 +500,34 @@ impl FreeMotion {
         }
     }
 
-    /// Decides which stops are touched and which friction sticks, from the values in `x`.
+    /// Passes a corner of prescribed motions, to the time behind it.
+    fn pass_corner(
+        &mut self,
+        solver: &mut Solver,
+        given: &impl Given,
+        time: f64,
+    ) -> Result<(), Error> {
+        if !self.equations.directions.is_empty() {
+            return Err(Error::NoDerivatives { time });
+        }
+        self.x.copy_from_slice(&self.integrator.state().x);
+        self.equations
+            .pass_corner(solver, given, time, &mut self.x)?;
+        self.settle(solver, given)?;
+        self.go_on(solver, given)
+    }
+
+    /// Moves parts that overlap apart, and decides which stops are touched and which friction sticks, from
+    /// the values in `x`.
     fn settle(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         let Self {
             equations,
             x,
             events,
+            overlaps,
             ..
         } = self;
-        equations.settle(solver, given, x, events)
+        equations.settle(solver, given, x, events, overlaps)
     }
 
     /// Returns whether stops or friction act on the freedoms.
@@ -528,6 +563,11 @@ impl FreeMotion {
     /// Returns the events since the last call.
     pub fn events(&mut self) -> impl Iterator<Item = Event> {
         self.events.drain(..)
+    }
+
+    /// Returns what has overlapped since the last call, at the start or where inputs or parameters jumped.
+    pub fn overlaps(&mut self) -> impl Iterator<Item = Overlap> {
+        self.overlaps.drain(..)
     }
 
     /// Gives a solution the rates of all drivers and the passive forces at the accepted point. Those that

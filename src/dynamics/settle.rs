@@ -4,6 +4,7 @@ use super::equations::Equations;
 use super::error::Error;
 use super::event::{Event, EventKind};
 use super::given::Given;
+use super::overlap::Overlap;
 use super::passive::{Mode, Passive};
 use crate::kinematics::Solver;
 use crate::mechanism::Order;
@@ -65,34 +66,9 @@ impl Equations {
         Ok(())
     }
 
-    /// Moves coordinates that are beyond a rigid stop by as much as rounding back to it, as a host finds
-    /// an instant less well; what sticks then does so at a new place.
-    fn push_out(
-        &mut self,
-        solver: &mut Solver,
-        given: &impl Given,
-        time: f64,
-        x: &mut [f64],
-    ) -> Result<(), Error> {
-        for Touch { force, side } in self.touches() {
-            let at = &self.point.passive[force];
-            let limit = at.bounds[usize::from(side == Mode::AtMax)];
-            if side.sign() * (at.coordinate.value - limit) < -0.9 * at.gap_rounding() {
-                self.passive.modes[force] = side;
-                self.passive.anchors[force] = limit;
-            }
-        }
-        if self.passive.holds() {
-            self.project_places(solver, given, time, x)?;
-            self.passive.anchors.fill(f64::INFINITY);
-            self.release(solver, given, time, x)?;
-        }
-        Ok(())
-    }
-
-    /// Decides the modes of all passive forces at the solver's pose: lets contacts bounce or rest, and
-    /// friction stick or slide. Changes values and velocities in `x`; the equations have to be evaluated
-    /// again.
+    /// Decides the modes of all passive forces at the solver's pose: moves parts that overlap apart, lets
+    /// contacts bounce or rest, and friction stick or slide. Changes values and velocities in `x`; the
+    /// equations have to be evaluated again.
     ///
     /// # Errors
     ///
@@ -103,6 +79,7 @@ impl Equations {
         given: &impl Given,
         x: &mut [f64],
         events: &mut Vec<Event>,
+        overlaps: &mut Vec<Overlap>,
     ) -> Result<(), Error> {
         if self.passive.is_empty() {
             return Ok(());
@@ -112,7 +89,7 @@ impl Equations {
         let before = self.passive.modes.clone();
         self.evaluate(solver, given, time, x)?;
         self.release(solver, given, time, x)?;
-        self.push_out(solver, given, time, x)?;
+        overlaps.extend(self.push_out(solver, given, time, x)?);
         let rest = self.bounce(solver, given, time, x, events)?;
         self.choose(solver, given, time, x, &before)?;
         self.project(solver, given, time, x)?;

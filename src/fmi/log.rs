@@ -84,6 +84,8 @@ pub enum Advice {
     Rates,
     /// A singular position is near: a dead point may follow.
     SingularPosition,
+    /// Parts overlap.
+    Overlap,
 }
 
 impl Advice {

@@ -415,6 +415,13 @@ impl Solver {
         self.state.motions.evaluate(driver, Jet::variable(time))
     }
 
+    /// Returns the first corner of a prescribed motion in a range of time, at which its velocity jumps: the
+    /// last time before it and the first one after it \[s\]. Allocates nothing.
+    #[must_use]
+    pub fn next_corner(&self, from: f64, to: f64) -> Option<[f64; 2]> {
+        self.state.motions.corner(from, to)
+    }
+
     /// Returns the distance of each body from its estimate at the present pose.
     ///
     /// # Errors

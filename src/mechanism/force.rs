@@ -405,6 +405,12 @@ impl Load {
         }
     }
 
+    /// Returns whether it is that of a contact, which holds its coordinate at a limit.
+    #[must_use]
+    pub fn is_contact(&self) -> bool {
+        self.cause().is_some_and(PassiveCause::is_contact)
+    }
+
     /// Returns whether its size is an FMI input.
     #[must_use]
     pub fn is_input(&self) -> bool {

@@ -1,8 +1,8 @@
 //! The free motion of a session, and its states.
 
-use crate::dynamics::{Error, Event, FreeMotion, FreeState, Given};
+use crate::dynamics::{Error, Event, FreeMotion, FreeState, Given, Overlap};
 use crate::kinematics::{Pose, Solution, Solver, SolverChoices};
-use crate::mechanism::{DriverId, Jet};
+use crate::mechanism::{DriverId, Jet, Mechanism};
 
 /// The motion of the freedoms.
 pub(super) struct Freedoms {
@@ -13,6 +13,8 @@ pub(super) struct Freedoms {
     pub(super) is_released: bool,
     /// The events of the motion, while a chart is computed.
     pub(super) events: Option<Vec<Event>>,
+    /// Parts that overlapped, not told yet.
+    overlaps: Vec<Overlap>,
 }
 
 impl Freedoms {
@@ -25,6 +27,7 @@ impl Freedoms {
             motion,
             is_released: false,
             events: None,
+            overlaps: Vec::new(),
         }))
     }
 
@@ -42,6 +45,7 @@ impl Freedoms {
         self.motion.resume(solver, &self.fresh)?;
         let velocity = |freedom: DriverId| inputs.drivers[freedom.index()].first();
         self.motion.restart(solver, &inputs, velocity)?;
+        self.overlaps.extend(self.motion.overlaps());
         self.is_released = true;
         Ok(true)
     }
@@ -56,6 +60,7 @@ impl Freedoms {
         let inputs = Inputs::new(solver.pose(), solution);
         let parameters = solver.pose().parameters.clone();
         self.motion.jump(solver, &inputs, &parameters)?;
+        self.overlaps.extend(self.motion.overlaps());
         let advanced = self.motion.advance(solver, solution, &inputs, time);
         let events = self.motion.events();
         match &mut self.events {
@@ -63,6 +68,14 @@ impl Freedoms {
             None => events.for_each(drop),
         }
         advanced
+    }
+
+    /// Returns descriptions of what has overlapped since the last call.
+    pub(super) fn overlaps(&mut self, mechanism: &Mechanism) -> Vec<String> {
+        let overlaps = self.overlaps.drain(..);
+        overlaps
+            .map(|overlap| overlap.describe(mechanism))
+            .collect()
     }
 
     /// Makes the solver that of the file's own coordinates, anywhere. Returns whether it was another

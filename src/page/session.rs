@@ -117,6 +117,8 @@ impl Session {
             source,
         };
         session.refresh();
+        let overlaps = session.overlaps();
+        session.warnings.extend(overlaps);
         session.home = session.now();
         Ok(session)
     }
@@ -154,7 +156,7 @@ impl Session {
         path.curves[driver.index()] = Curve::held(value, position);
         let outcome = self.follow(|id| id == driver);
         self.release_moved(self.mechanism.drivers[driver.index()].is_free());
-        outcome
+        self.tell_overlaps(outcome)
     }
 
     /// Moves to a time \[s\], with parameters and inputs as they are.
@@ -196,7 +198,7 @@ impl Session {
         path.to.clone_from(&values);
         let Err(blocked) = self.solver.track(&self.path) else {
             self.release_moved(false);
-            return Outcome::Reached;
+            return self.tell_overlaps(Outcome::Reached);
         };
         let mut obstacle = Obstacle::of_stop(&blocked, &self.solver, &self.path, |_| false);
         if let Reason::Stop(_) = blocked.reason {
@@ -215,7 +217,7 @@ impl Session {
                 self.solver.restore(solver.pose());
                 self.start = self.here();
                 self.release_moved(true);
-                return Outcome::Reached;
+                return self.tell_overlaps(Outcome::Reached);
             }
             Ok(_) => {
                 let (unit, factor) = shown_in(own.unit.unwrap_or(Unit::ONE), None);
@@ -256,6 +258,20 @@ impl Session {
             *load = size;
             self.fly_on();
             self.refresh();
+        }
+    }
+
+    /// Returns descriptions of what has overlapped since the last call.
+    fn overlaps(&mut self) -> Vec<String> {
+        let freedoms = self.freedoms.as_mut();
+        freedoms.map_or_else(Vec::new, |freedoms| freedoms.overlaps(&self.own))
+    }
+
+    /// Returns the outcome of a move after which parts that overlapped were moved apart.
+    pub(super) fn tell_overlaps(&mut self, outcome: Outcome) -> Outcome {
+        match (outcome, self.overlaps().first()) {
+            (Outcome::Reached, Some(overlap)) => Outcome::Stopped(Obstacle::new(overlap)),
+            (outcome, _) => outcome,
         }
     }
 

@@ -8,8 +8,8 @@
 use std::sync::Arc;
 
 use biela::fmi::{
-    Category, CoSimulation, Error, Failure, Instance as FmiInstance, Interface, MechanismModel,
-    StateChange, StepProgress, Version,
+    Category, CoSimulation, Error, Failure, Instance as FmiInstance, Interface, Kind,
+    MechanismModel, StateChange, StepProgress, Version,
 };
 use biela::mechanism::Mechanism;
 
@@ -341,5 +341,121 @@ fn a_step_of_free_motion_returns_early_at_an_event() {
             "{place} {velocity}"
         );
         assert!(heard.take(Category::Error).is_empty());
+    }
+}
+
+/// Two wheels of equal inertia with a ratio of 1/2 and a backlash of 1 deg, which overlap at the start:
+/// 100 deg and 0 become 80.2 deg and −39.6 deg.
+fn wheels() -> Arc<Mechanism> {
+    parse(
+        r#"
+format = 1
+name = "wheels"
+[ground.markers]
+O = [0, 0]
+[bodies]
+a = { markers = { O = [0, 0] }, mass = 1, inertia = 0.01 }
+b = { markers = { O = [0, 0] }, mass = 1, inertia = 0.01 }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "a.O"] }
+P = { type = "revolute", markers = ["ground.O", "b.O"] }
+mesh = { type = "gear", markers = ["a.O", "b.O"], teeth = [20, 40], backlash = "1*deg" }
+[freedoms]
+p = { coordinate = "angle", markers = ["ground.O", "a.O"], start = "100*deg" }
+q = { coordinate = "angle", markers = ["ground.O", "b.O"] }
+"#,
+    )
+}
+
+/// The warning of the wheels, which overlap by a depth.
+fn told(depth: &str, p: [&str; 2], q: [&str; 2]) -> String {
+    format!(
+        "t = 0 s: the parts of joint `mesh` overlap by {depth} deg; moved apart: `p` from {} deg to {} deg, \
+         `q` from {} deg to {} deg",
+        p[0], p[1], q[0], q[1]
+    )
+}
+
+/// Unasked, an FMU begins where its model description says, and says what it has moved; a start that the
+/// host sets is moved in the same way, and told.
+#[test]
+fn starts_that_overlap_are_moved_and_told() {
+    let names = ["p.position", "q.position"];
+    let assert_at = |instance: &mut Instance, degrees: [f64; 2]| {
+        for (value, degrees) in get(instance, names).into_iter().zip(degrees) {
+            assert!(
+                (value.to_degrees() - degrees).abs() < 1e-12,
+                "{value} {degrees}"
+            );
+        }
+    };
+    for interface in [Interface::CoSimulation, Interface::ModelExchange] {
+        let heard = Heard::default();
+        let mut instance = heard.instance(wheels(), interface, true);
+        let starts = names.map(|name| {
+            let named = instance.variables().iter().find(|v| v.name == name);
+            named.expect("an output").kind.clone()
+        });
+        for (kind, degrees) in starts.iter().zip([80.2_f64, -39.6]) {
+            let Kind::Real {
+                start: Some(start), ..
+            } = kind
+            else {
+                panic!("{kind:?}")
+            };
+            assert!((start.to_degrees() - degrees).abs() < 1e-12, "{start}");
+        }
+        let mut instance = started(instance);
+        assert_at(&mut instance, [80.2, -39.6]);
+        let own = told("49.5", ["100", "80.2"], ["0", "-39.6"]);
+        assert_eq!(heard.take(Category::Warning), [own]);
+
+        // A depth of 20 deg has 1/2 · 16/(5/4) and 16/(5/4) deg of the angles.
+        instance.reset().expect("legal");
+        let angle = |degrees: f64| degrees.to_radians();
+        set(
+            &mut instance,
+            [("p.position", angle(41.0)), ("q.position", 0.0)],
+        );
+        let mut instance = started(instance);
+        assert_at(&mut instance, [33.0, -16.0]);
+        let own = told("20", ["41", "33"], ["0", "-16"]);
+        assert_eq!(heard.take(Category::Warning), [own]);
+        let state = instance.fmu_state().expect("legal");
+        instance.set_fmu_state(&state).expect("its own");
+        assert_at(&mut instance, [33.0, -16.0]);
+
+        // Wheels that touch are where the host has set them.
+        instance.reset().expect("legal");
+        set(
+            &mut instance,
+            [("p.position", angle(40.0)), ("q.position", angle(-19.6))],
+        );
+        let mut instance = started(instance);
+        assert_at(&mut instance, [40.0, -19.6]);
+        assert_eq!(heard.take(Category::Warning), [""; 0]);
+    }
+}
+
+/// A wall that the host moves by 0.05 m takes the nut along, and says so.
+#[test]
+fn a_wall_that_jumps_takes_a_free_nut_along() {
+    for interface in [Interface::CoSimulation, Interface::ModelExchange] {
+        let heard = Heard::default();
+        let text =
+            "t = 0 s: stop `wall` is passed by 0.05 m; moved apart: `feed` from 0 m to -0.05 m";
+        let mut instance = started(heard.instance(free(), interface, true));
+        if interface == Interface::CoSimulation {
+            set(&mut instance, [("wall_place", -0.05)]);
+            instance.do_step(0.0, 0.01).expect("it goes on");
+        } else {
+            instance.enter_event_mode().expect("legal");
+            set(&mut instance, [("wall_place", -0.05)]);
+            let event = instance.new_discrete_states().expect("it goes on");
+            assert_eq!(event.states, StateChange::Values);
+            let states: Vec<f64> = instance.continuous_states(2).expect("known").collect();
+            assert_eq!(states, [-0.05, 0.0]);
+        }
+        assert_eq!(heard.take(Category::Warning), [text], "{interface:?}");
     }
 }

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from harness import SHIPPED, signals, simulate
+from numpy.testing import assert_allclose
 
 HZ = 10
 """Steps per second of the host."""
@@ -65,6 +66,28 @@ def test_a_driver_beyond_its_limits(fmu, capsys):
     position = np.radians(24.5 + np.sin(np.arange(30) / 4))
     lines = moved(fmu, capsys, "hatch", "opening", position, fmi_type="CoSimulation")
     assert_one(lines, "beyond its `max`")
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("own", [True, False])
+def test_wheels_that_overlap_at_the_start(fmu, capsys, kind, own):
+    """They are moved by 2/5 and 4/5 of the depth, and meet with 1 rad/s, which leaves -0.4 and 0.2 rad/s. The
+    model description has these starts. Others that a host sets are moved too."""
+    exported = fmu("overlapping_wheels")
+    values = ["p.position", "q.position", "p.velocity", "q.velocity"]
+    if own:
+        truth = [np.radians(80.2), np.radians(-39.6), -0.4, 0.2]
+        starts = {variable.name: variable for variable in exported.description.modelVariables}
+        assert_allclose([float(starts[name].start) for name in values], truth, rtol=1e-14)
+        assert {starts[name].initial for name in values} == {"exact"}
+        options, depth = {}, "49.5 deg"
+    else:
+        truth = [np.radians(33), np.radians(-16), -0.4, 0.2]
+        start = [np.radians(41), 0.0, 0.0, 1.0]
+        options, depth = {"start_values": dict(zip(values, start, strict=True))}, "20 deg"
+    result = simulate(exported, fmi_type=kind, output=values, stop_time=0.1, **options)
+    assert_allclose([result[name][0] for name in values], truth, rtol=1e-13)
+    assert_one(capsys.readouterr().out.splitlines(), f"overlap by {depth}; moved apart: `p` from")
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])

@@ -237,6 +237,24 @@ def test_the_start_of_a_freedom_is_set(mechanism):
         pendulum.run(t=t, parameters={"swing.velocity": np.nan})
 
 
+def test_a_start_beyond_a_rope_is_warned_of():
+    """The ball goes to the nearest place that the rope leaves."""
+    ball = biela.loads(
+        "format = 1\nname = 'ball'\n[ground.markers]\nA = [0, 0]\n[bodies.ball]\nmass = 2\n"
+        "markers = { C = [0, 0] }\n[joints]\n"
+        "rope = { type = 'rope', markers = ['ground.A', 'ball.C'], length = 1, unilateral = true }\n"
+        "[constraints]\n"
+        "upright = { coordinate = 'angle', markers = ['ground.A', 'ball.C'], value = 0 }\n"
+        "[freedoms]\nx = { coordinate = 'x', markers = ['ground.A', 'ball.C'], start = 0.9 }\n"
+        "y = { coordinate = 'y', markers = ['ground.A', 'ball.C'], start = -1.2 }\n"
+    )
+    message = "rope `rope` is too short by 0.5 m; moved apart: `x` from 0.9 m to 0.6 m, `y` from -1.2 m to"
+    with pytest.warns(biela.MechanismWarning, match=message):
+        result = ball.run(t=[0.0, 0.01])
+    place = [result["x.position"][0], result["y.position"][0]]
+    assert_allclose(place, [0.6, -0.8], rtol=AT_ROUNDING)
+
+
 def test_arrays_that_look_like_degrees_are_warned_of(mechanism):
     four_bar = mechanism("four_bar")
     turn = np.linspace(0, 360, 8)

@@ -122,10 +122,16 @@ impl Check {
         for excursion in excursions(&solver) {
             Message::Warning(excursion).show();
         }
+        let free = mechanism
+            .has_freedoms()
+            .then(|| AtRest::start(input.source.name(), input.assemble()?, Signals::default()));
+        if let Some(Ok(at)) = &free {
+            // Parts that overlapped have been moved apart.
+            solver.restore(at.solver.pose());
+        }
         print(&describe_pose(&mut solver))?;
         input.check_rest(&mut solver)?;
-        if mechanism.has_freedoms() {
-            let at = AtRest::start(input.source.name(), input.assemble()?, Signals::default());
+        if let Some(at) = free {
             print(&describe_free_motion(&mut at?)?)?;
         }
         if mechanism.has_dynamics() {

@@ -16,6 +16,7 @@ use crate::cli::output::write;
 use crate::cli::page_solver;
 use crate::cli::runtime::{self, FoundLibrary};
 use crate::cli::stdout::is_stdout;
+use crate::dynamics::KeptStart;
 use crate::exchange::write_ssp;
 use crate::fmi::{Platform, RuntimeLibrary, Version, describe, variables, write_fmu};
 use crate::kinematics::Solver;
@@ -211,11 +212,15 @@ pub(in crate::cli) fn version(text: &str) -> Result<Version, String> {
     }
 }
 
-/// Returns a solver at the file's own pose, where the mechanism can rest; warns of misfits there.
+/// Returns a solver at the file's own pose, where the mechanism can rest; warns of misfits and overlaps there.
 fn assemble(input: &Input) -> Result<Solver, Error> {
     let mut solver = input.assemble()?;
     input.check_rest(&mut solver)?;
     warn_of_misfits(&solver);
+    let kept = KeptStart::of(&input.mechanism);
+    for overlap in kept.iter().flat_map(|kept| &kept.overlaps) {
+        Message::Warning(overlap.describe(&input.mechanism)).show();
+    }
     Ok(solver)
 }
 

@@ -31,7 +31,7 @@ use friction::Rubbing;
 
 /// Least gap, speed and acceleration that are rounding, in radians or sizes of the mechanism: some
 /// hundred roundings.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 /// A speed, or an acceleration, of so many roundings may be rest: 1e-8 radians or sizes of the mechanism
 /// per second. The instant of an event is not known much better.
 const SLOW: f64 = 1e6;

@@ -7,6 +7,7 @@ use super::decisions::Decisions;
 use super::dependencies::{DependencyTable, Kinds};
 use super::guid::guid_decided;
 use super::variables::{Quantity, variables_of};
+use crate::dynamics::KeptStart;
 use crate::fmi::model::Model;
 use crate::fmi::model_description::{Experiment, Member, ModelDescription, Terminal, Unknown};
 use crate::fmi::state::Version;
@@ -31,7 +32,9 @@ pub(super) fn describe_decided<'a>(
     standard: Version,
     decisions: &Decisions,
 ) -> ModelDescription<'a, Quantity> {
-    let mut variables = variables_of(mechanism, decisions);
+    let kept = KeptStart::of(mechanism);
+    let started = kept.as_ref().map_or(mechanism, |kept| &kept.mechanism);
+    let mut variables = variables_of(started, decisions);
     set_nominal(mechanism, &mut variables);
     let table = DependencyTable::new(mechanism, structure, &variables);
     let mut outputs = Vec::new();

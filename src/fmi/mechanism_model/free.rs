@@ -148,6 +148,7 @@ impl MechanismModel {
         self.note_states();
         self.log_crossings(log);
         self.log_events(log);
+        self.report_overlaps(log);
         moved.map_err(|error| Failure::Discarded(error.to_string()))?;
         match reached < end {
             true => Err(Failure::Event),
@@ -156,16 +157,34 @@ impl MechanismModel {
     }
 
     /// Takes the committed pose and the states that the host has set for those of the motion, when
-    /// initialization ends.
+    /// initialization ends. Parts that overlap there are moved apart.
     ///
     /// # Errors
     ///
     /// Freedoms have no acceleration there.
-    pub(super) fn settle_freedoms(&mut self) -> Result<(), Failure> {
+    pub(super) fn settle_freedoms(&mut self, log: &Logger) -> Result<(), Failure> {
         if let Some(state) = &mut self.course.free {
             state.modes.fill((Mode::Free, 0.0));
         }
-        self.settle()
+        self.settle()?;
+        self.report_overlaps_at_start(log);
+        self.commit_settled();
+        Ok(())
+    }
+
+    /// Takes values and velocities for those that the host gives, and commits the pose, after contacts have
+    /// met.
+    fn commit_settled(&mut self) {
+        if self.has_passive_forces() {
+            self.note_states();
+            self.set_driver_rates(self.course.time, 0.0, 0.0);
+            self.commit_pose();
+        }
+    }
+
+    /// Returns whether stops or friction act on freedoms.
+    fn has_passive_forces(&self) -> bool {
+        (self.free.as_ref()).is_some_and(FreeMotion::has_passive_forces)
     }
 
     /// Takes the committed pose and the states that the host has set for those of the motion.
@@ -254,9 +273,7 @@ impl MechanismModel {
 
     /// Returns whether held coordinates have drifted from where they are held, at the committed pose.
     pub(super) fn wants_projection(&mut self) -> bool {
-        self.free
-            .as_ref()
-            .is_some_and(FreeMotion::has_passive_forces)
+        self.has_passive_forces()
             && self.solve_freedoms().is_ok()
             && self.free.as_ref().is_some_and(FreeMotion::has_drifted)
     }
@@ -268,11 +285,7 @@ impl MechanismModel {
     ///
     /// Freedoms have no acceleration there.
     pub(super) fn settle_events(&mut self, log: &Logger) -> Result<bool, Failure> {
-        if !self
-            .free
-            .as_ref()
-            .is_some_and(FreeMotion::has_passive_forces)
-        {
+        if !self.has_passive_forces() {
             return Ok(false);
         }
         let states = |course: &Course| -> Vec<[f64; 2]> {
@@ -285,9 +298,13 @@ impl MechanismModel {
         let before = states(&self.course);
         self.settle()?;
         self.log_events(log);
-        self.note_states();
-        self.set_driver_rates(self.course.time, 0.0, 0.0);
-        self.commit_pose();
+        if std::mem::take(&mut self.has_jumped) {
+            self.report_overlaps(log);
+        } else if let Some(free) = &mut self.free {
+            // A host finds the instant of an event as well as it integrates.
+            free.overlaps().for_each(drop);
+        }
+        self.commit_settled();
         Ok(states(&self.course) != before)
     }
 

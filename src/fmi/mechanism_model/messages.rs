@@ -227,6 +227,24 @@ impl MechanismModel {
         }
     }
 
+    /// Advises of parts that overlapped, where inputs or parameters had jumped.
+    pub(super) fn report_overlaps(&mut self, log: &Logger) {
+        for overlap in self.free.iter_mut().flat_map(FreeMotion::overlaps) {
+            log.advise(Advice::Overlap, || overlap.describe(&self.mechanism));
+        }
+    }
+
+    /// Advises of parts that overlap at the start: at that of the file, if the host has set no other one.
+    pub(super) fn report_overlaps_at_start(&mut self, log: &Logger) {
+        let (start, own) = (&self.course.committed, &self.file_pose);
+        if start.drivers == own.drivers && start.parameters == own.parameters {
+            for overlap in &self.overlaps {
+                log.advise(Advice::Overlap, || overlap.describe(&self.mechanism));
+            }
+        }
+        self.report_overlaps(log);
+    }
+
     /// Logs the effort of a step.
     fn log_effort(&self, log: &Logger) {
         if log.wants(Category::Solver) {

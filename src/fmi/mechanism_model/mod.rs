@@ -57,7 +57,7 @@ use super::model::{Groups, Model, StateChange};
 use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
-use crate::dynamics::{FreeMotion, FreeState};
+use crate::dynamics::{FreeMotion, FreeState, KeptStart, Overlap};
 use crate::kinematics::{
     self, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices, offer_start,
 };
@@ -83,9 +83,11 @@ pub struct MechanismModel {
     interface: Interface,
     variables: Vec<Variable<Quantity>>,
     solver: Solver,
-    /// Pose of the file's own values, and the solver's choices there.
+    /// Pose of the file's own values, where its motion [begins](KeptStart), and the solver's choices there.
     file_pose: Arc<Pose>,
     file_choices: SolverChoices,
+    /// Overlaps at the start of the file.
+    overlaps: Vec<Overlap>,
     course: Course,
     /// Rates and forces at the solver's pose; the values of the drivers' rates have no meaning.
     solution: Solution,
@@ -103,6 +105,8 @@ pub struct MechanismModel {
     dead_point: Option<f64>,
     /// Whether steps end at events of free motion.
     ends_at_events: bool,
+    /// Whether inputs or parameters have jumped at the last commit.
+    has_jumped: bool,
 }
 
 /// Everything that decides how the model goes on, apart from the solver's pose and the rates of the
@@ -224,6 +228,10 @@ impl MechanismModel {
         interface: Interface,
         decisions: &Decisions,
     ) -> Result<Self, kinematics::Error> {
+        let (mechanism, overlaps) = match KeptStart::of(&mechanism) {
+            Some(kept) => (kept.mechanism, kept.overlaps),
+            None => (mechanism, Vec::new()),
+        };
         let path = Path::new(&mechanism);
         let solver = Solver::assembled(Arc::clone(&mechanism), &path);
         let solver = solver.map_err(|error| offer_start(error, &mechanism))?;
@@ -255,7 +263,9 @@ impl MechanismModel {
             parts: None,
             dead_point: None,
             ends_at_events: false,
+            has_jumped: false,
             file_pose,
+            overlaps,
             solver,
             mechanism,
         })

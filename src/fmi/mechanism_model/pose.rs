@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::messages::describe_contradiction;
 use super::rule::Source;
-use super::{Freshness, MechanismModel, failed, without_value};
+use super::{Course, Freshness, MechanismModel, failed, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::{Advice, Logger};
 use crate::fmi::state::{Interface, Phase};
@@ -214,6 +214,7 @@ impl MechanismModel {
         if phase == Phase::Event {
             return self.commit_event(log);
         }
+        self.has_jumped = !starting && self.free.is_some() && self.jumps();
         if !starting && self.hosts_freedoms() {
             self.evaluate(false)?;
             self.set_freshness(Freshness::Pose);
@@ -224,7 +225,7 @@ impl MechanismModel {
         }
         self.commit_pose();
         if starting {
-            self.settle_freedoms()?;
+            self.settle_freedoms(log)?;
             for input in &mut self.course.inputs {
                 input.start();
             }
@@ -233,6 +234,23 @@ impl MechanismModel {
             self.complete_step(self.course.time, 0.0, log);
         }
         Ok(())
+    }
+
+    /// Returns whether inputs of drivers, or parameters, differ from those of the committed pose at its time.
+    fn jumps(&self) -> bool {
+        let Course {
+            time,
+            committed,
+            parameters,
+            inputs,
+            ..
+        } = &self.course;
+        let drivers = self.mechanism.drivers.iter().zip(inputs);
+        let mut given =
+            (drivers.zip(&committed.drivers)).filter(|((driver, _), _)| driver.is_given());
+        time.to_bits() == committed.time.to_bits()
+            && (*parameters != committed.parameters
+                || given.any(|((_, input), last)| (input.position() - last).abs() > 0.0))
     }
 
     /// Commits the pose of the values set at an event. An input that has jumped starts its history

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::decisions::Decisions;
 use super::rule::{EXTRAPOLATION, RATES};
-use crate::dynamics;
+use crate::dynamics::{self, KeptStart};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Dependencies, Output, OutputSource};
 use crate::mechanism::{
@@ -56,10 +56,13 @@ pub enum Quantity {
 /// order within each group.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
-    variables_of(mechanism, &Decisions::of(mechanism))
+    let kept = KeptStart::of(mechanism);
+    let started = kept.map_or_else(|| Arc::clone(mechanism), |kept| kept.mechanism);
+    variables_of(&started, &Decisions::of(mechanism))
 }
 
-/// Returns the variables that follow from the decisions of an export.
+/// Returns the variables that follow from the decisions of an export, for a mechanism with the start that
+/// its motion [keeps](KeptStart).
 pub(super) fn variables_of(
     mechanism: &Mechanism,
     decisions: &Decisions,

@@ -73,6 +73,14 @@ impl Motions {
             .and_then(|motion| motion.enclose_joined(t))
     }
 
+    /// Returns the first corner of a motion in a range of time, as the times before and after it; see
+    /// [`MotionInForce::corner`].
+    pub(in crate::kinematics) fn corner(&self, from: f64, to: f64) -> Option<[f64; 2]> {
+        let motions = self.in_force.iter().flatten();
+        let corners = motions.filter_map(|motion| motion.corner(from, to));
+        corners.min_by(|a, b| a[1].total_cmp(&b[1]))
+    }
+
     /// Returns the next time after `t` at which a motion given by a table begins another piece.
     pub(in crate::kinematics) fn next_point(&self, t: f64) -> f64 {
         let motions = self.in_force.iter().flatten();

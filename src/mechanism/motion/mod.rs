@@ -1,5 +1,6 @@
 //! Prescribed motions: a driver's value as a function of time and the parameters.
 
+mod corner;
 mod law;
 mod moving;
 

@@ -57,6 +57,40 @@ fn tip(session: &Session) -> [f64; 2] {
     session.point(ROD, [LENGTH / 2.0, 0.0]).into()
 }
 
+/// Two equal wheels with a ratio of 1/2 and a backlash of 1 deg.
+const WHEELS: &str = r#"
+format = 1
+name = "wheels"
+ground.markers = { O = [0, 0] }
+bodies.a = { markers = { O = [0, 0] }, mass = 1, inertia = 0.01 }
+bodies.b = { markers = { O = [0, 0] }, mass = 1, inertia = 0.01 }
+joints.O = { type = "revolute", markers = ["ground.O", "a.O"] }
+joints.P = { type = "revolute", markers = ["ground.O", "b.O"] }
+joints.mesh = { type = "gear", markers = ["a.O", "b.O"], teeth = [20, 40], backlash = "1*deg" }
+freedoms.p = { coordinate = "angle", markers = ["ground.O", "a.O"], start = "100*deg" }
+freedoms.q = { coordinate = "angle", markers = ["ground.O", "b.O"] }
+"#;
+
+/// As the file is opened, and where the hand goes on: the angles take 2/5 and 4/5 of the depth.
+#[test]
+fn parts_that_overlap_are_told() {
+    let mut session = open(WHEELS);
+    let warnings = &session.description()["warnings"];
+    let opened = "t = 0 s: the parts of joint `mesh` overlap by 49.5 deg; moved apart: `p` from 100 deg to \
+                  80.2 deg, `q` from 0 deg to -39.6 deg";
+    assert_eq!(*warnings, json!([opened]));
+    assert!((session.driver(DriverId(0)).value.to_degrees() - 80.2).abs() < 1e-12);
+    let Outcome::Stopped(obstacle) = session.drive(DriverId(0), 90.2_f64.to_radians()) else {
+        panic!("the wheels overlap by 5 deg");
+    };
+    assert_eq!(
+        obstacle.message,
+        "t = 0 s: the parts of joint `mesh` overlap by 5 deg; moved apart: `p` from 90.2 deg to 88.2 deg, \
+         `q` from -39.6 deg to -43.6 deg"
+    );
+    assert_eq!(session.go_to(0.1), Outcome::Reached);
+}
+
 // The period is 4 K(sin 60°) sqrt(I/(m g a)), by the arithmetic-geometric mean: K = π/(2 agm(1, cos)).
 #[test]
 fn a_pendulum_that_is_let_go_swings_in_its_period() {

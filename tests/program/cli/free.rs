@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::cli::program::{biela, stdout};
+use crate::cli::program::{biela, stderr, stdout};
 
 /// A rod of 2 kg whose centre of mass is 0.5 m from its pivot, with an inertia of 0.5 kg.m2 about it.
 const ROD: &str = r#"
@@ -23,6 +23,65 @@ fn answer(start: &str, arguments: &[&str]) -> String {
     let mut all = vec![arguments[0], file.to_str().expect("UTF-8")];
     all.extend(&arguments[1..]);
     stdout(&biela(&all).success())
+}
+
+/// Two equal wheels with a ratio of 1/2 and a backlash of 1 deg, which overlap by 49.5 deg at the start.
+const WHEELS: &str = r#"
+format = 1
+name = "wheels"
+ground.markers = { O = [0, 0] }
+bodies.a = { markers = { O = [0, 0] }, mass = 1, inertia = 0.01 }
+bodies.b = { markers = { O = [0, 0] }, mass = 1, inertia = 0.01 }
+joints.O = { type = "revolute", markers = ["ground.O", "a.O"] }
+joints.P = { type = "revolute", markers = ["ground.O", "b.O"] }
+joints.mesh = { type = "gear", markers = ["a.O", "b.O"], teeth = [20, 40], backlash = "1*deg" }
+freedoms.p = { coordinate = "angle", markers = ["ground.O", "a.O"], start = "100*deg" }
+freedoms.q = { coordinate = "angle", markers = ["ground.O", "b.O"] }
+"#;
+
+/// Each command that begins the motion warns once, and shows what results: 100 − 19.8 deg and −39.6 deg.
+#[test]
+fn a_start_at_which_parts_overlap_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("wheels.toml");
+    std::fs::write(&file, WHEELS).expect("it can be written");
+    let file = file.to_str().expect("UTF-8");
+    let warning = "t = 0 s: the parts of joint `mesh` overlap by 49.5 deg; moved apart: `p` from 100 deg to \
+                   80.2 deg, `q` from 0 deg to -39.6 deg";
+    let answer = |arguments: &[&str]| {
+        let assert = biela(arguments).success();
+        let told = stderr(&assert);
+        assert_eq!(told.matches(warning).count(), 1, "{told}");
+        assert!(told.starts_with(&format!("warning: {warning}\n")), "{told}");
+        stdout(&assert)
+    };
+    let checked = answer(&["check", file]);
+    let expected = "assembled at\n  p = 80.200000 deg\n  q = -39.600000 deg\n";
+    assert!(checked.contains(expected), "{checked}");
+    answer(&["run", file, "-v", "p"]);
+    answer(&["balance", file]);
+    let xml = answer(&["export", file, "--model-description", "-"]);
+    for (name, degrees) in [("p", 80.2_f64), ("q", -39.6)] {
+        let variable = &xml[xml
+            .find(&format!("name=\"{name}.position\""))
+            .expect("an output")..];
+        assert!(variable[..200].contains("initial=\"exact\""), "{variable}");
+        let start = variable.split("start=\"").nth(1).expect("it has a start");
+        let start: f64 = start[..start.find('"').expect("an end")]
+            .parse()
+            .expect("a number");
+        assert!((start.to_degrees() - degrees).abs() < 1e-12, "{start}");
+    }
+    let report = stdout(&biela(&["check", file, "--format", "json"]).success());
+    let report: Value = serde_json::from_str(&report).expect("JSON");
+    assert_eq!(
+        report["assembled"]["overlaps"],
+        serde_json::json!([warning])
+    );
+    let angle = report["assembled"]["drivers"][0]["value"]
+        .as_f64()
+        .expect("a number");
+    assert!((angle.to_degrees() - 80.2).abs() < 1e-12, "{angle}");
 }
 
 /// As if the file had these starts. A run tells how well it has kept the energy.

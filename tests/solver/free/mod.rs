@@ -13,6 +13,8 @@
 //! | `refused` | what has no inertia, what meets a dead point |
 //! | `events` | stops and friction against closed forms |
 //! | `unseen` | events between the ends of a step |
+//! | `overlap` | parts that overlap, and what brings them apart |
+//! | `corner` | corners of prescribed motions |
 //! | `play` | ropes, cams and wheels that open |
 //! | `joint_friction` | friction that grows with the reaction of its joint |
 //! | `balance` | static equilibrium and linear equations on stops and with friction |
@@ -22,12 +24,14 @@
 mod balance;
 mod chains;
 mod closed_form;
+mod corner;
 mod dead_points;
 mod events;
 mod invariance;
 mod joint_friction;
 mod lagrange;
 mod minimal;
+mod overlap;
 mod pendulum;
 mod play;
 mod published;

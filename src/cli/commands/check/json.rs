@@ -9,6 +9,7 @@ use super::forces::Forces;
 use super::{NEARLY_SINGULAR, equations_of_joints, excursions};
 use crate::cli::error::Error;
 use crate::cli::input::cannot_rest;
+use crate::dynamics::KeptStart;
 use crate::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System, offer_start};
 use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
@@ -134,6 +135,11 @@ fn assembled(
     modes: bool,
 ) -> Result<(Value, Option<String>), kinematics::Error> {
     let mut solver = Solver::assembled(Arc::clone(mechanism), &Path::new(mechanism))?;
+    let kept = KeptStart::of(mechanism);
+    if let Some(kept) = &kept {
+        solver.restore(&kept.pose);
+    }
+    let overlaps = kept.iter().flat_map(|kept| &kept.overlaps);
     let rcond = solver.rcond();
     let pose = solver.pose();
     let still = Rates::new(pose.q.len());
@@ -168,6 +174,7 @@ fn assembled(
         "redundancies": texts(&mut solver.redundancies().iter().map(ToString::to_string)),
         "misfits": texts(&mut misfits.chain(drawn)),
         "excursions": excursions(&solver),
+        "overlaps": texts(&mut overlaps.map(|overlap| overlap.describe(mechanism))),
     });
     if mechanism.has_dynamics() {
         let forces = Forces::at_rest(&mut solver)?;
