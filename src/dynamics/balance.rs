@@ -75,7 +75,7 @@ impl FreeMotion {
     ) -> Result<Equilibrium, Error> {
         loop {
             self.come_down(solver, solution, given, &sticking)?;
-            self.rest(solver, given)?;
+            self.begin_at_rest(solver, given)?;
             let before = sticking.len();
             sticking.retain(|k| self.rests(*k));
             if sticking.len() == before {
@@ -83,14 +83,14 @@ impl FreeMotion {
             }
         }
         if self.return_to_own(solver, solution)? {
-            self.rest(solver, given)?;
+            self.begin_at_rest(solver, given)?;
         }
         self.tell(solution);
         Ok(self.equilibrium(solver, &sticking))
     }
 
     /// Begins at rest at the solver's pose, which is no start: nothing is told of it.
-    fn rest(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
+    fn begin_at_rest(&mut self, solver: &mut Solver, given: &impl Given) -> Result<(), Error> {
         self.restart(solver, given, |_| 0.0)?;
         self.overlaps().for_each(drop);
         Ok(())
