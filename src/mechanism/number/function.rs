@@ -44,8 +44,8 @@ pub enum Unary {
 /// Distance from an integer at which a number counts as this integer, in units of one, or of the
 /// integer where that is more.
 ///
-/// What is whole in a formula is so to the rounding of some operations: `10*t` and `t/0.1` at
-/// t = 0.3, or a sum of angles over a turn. Halved, parts of a sum that jump together at `x - 20*pi`
+/// A count in a formula is whole to the rounding of some operations: `10*t` and `t/0.1` at t = 0.3, or
+/// a sum of angles over a turn. Halved, parts of a sum that jump together at `x - 20*pi`
 /// may do so on two sides of one number. Doubled, a number 7e-15 below an integer counts as whole.
 const WHOLE: f64 = 16.0 * f64::EPSILON;
 

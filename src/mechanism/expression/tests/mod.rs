@@ -259,6 +259,30 @@ fn constant_powers_are_right_at_zero_and_below() {
     assert_eq!(jet("t^-1", -2.0), triple(-0.5, -0.25, -0.25));
 }
 
+/// Integers to the rounding of an expression are integers, and its enclosure has them; others, some
+/// thousand roundings away, are none.
+#[test]
+#[expect(clippy::float_cmp, reason = "whole numbers are exact")]
+fn counts_are_whole_to_rounding() {
+    for (text, whole) in [
+        ("floor(10*0.3)", 3.0),
+        ("floor(0.3/0.1)", 3.0),
+        ("ceil(3*(1/3) + 1e-15)", 1.0),
+        ("ceil(0.3/0.1)", 3.0),
+        ("floor(-1e-16)", 0.0),
+        ("floor(3 - 1e-12)", 2.0),
+        ("ceil(-3 + 1e-12)", -2.0),
+        ("mod(0.3, 0.1)", 0.0),
+        ("mod(-1e-17, 1)", 0.0),
+        ("mod(-0.3, -0.1)", 0.0),
+    ] {
+        assert_eq!(value(text), whole, "{text}");
+        let expression = parse(text).expect(text);
+        let bounds: Interval = expression.evaluate(&|_| Interval::point(0.0), Interval::point(0.0));
+        assert!(bounds.contains(whole), "{text}: {bounds:?}");
+    }
+}
+
 #[test]
 fn what_does_not_vary_has_no_derivatives() {
     // Each has an infinite slope or none where it stands.
