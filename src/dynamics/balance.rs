@@ -73,20 +73,20 @@ impl FreeMotion {
         given: &impl Given,
         mut sticking: Vec<usize>,
     ) -> Result<Equilibrium, Error> {
-        loop {
-            self.come_down(solver, solution, given, &sticking)?;
+        let pushes = loop {
+            let pushes = self.come_down(solver, solution, given, &sticking)?;
             self.begin_at_rest(solver, given)?;
             let before = sticking.len();
             sticking.retain(|k| self.rests(*k));
             if sticking.len() == before {
-                break;
+                break pushes;
             }
-        }
+        };
         if self.return_to_own(solver, solution)? {
             self.begin_at_rest(solver, given)?;
         }
         self.tell(solution);
-        Ok(self.equilibrium(solver, &sticking))
+        Ok(self.equilibrium(solver, &sticking, &pushes))
     }
 
     /// Begins at rest at the solver's pose, which is no start: nothing is told of it.
@@ -104,8 +104,9 @@ impl FreeMotion {
         self.equations.passive.modes[friction] == Mode::Sticking || is_still && at.force != 0.0
     }
 
-    /// Returns the equilibrium at the accepted point.
-    fn equilibrium(&self, solver: &Solver, sticking: &[usize]) -> Equilibrium {
+    /// Returns the equilibrium at the accepted point, with these pushes of contacts if no friction holds:
+    /// what is left out would share the load.
+    fn equilibrium(&self, solver: &Solver, sticking: &[usize], pushes: &[f64]) -> Equilibrium {
         let drivers = (0..solver.mechanism().drivers.len()).map(DriverId);
         let still = Rates::new(solver.pose().q.len());
         let drivers = drivers.map(|id| {
@@ -121,26 +122,39 @@ impl FreeMotion {
                 && points[*k].bounds[1] > 0.0
         });
         let left_out: Vec<usize> = left_out.map(|k| passive.list[k].index).collect();
-        let held = self.acting(|k| match passive.list[k].cause.friction() {
-            Some(_) => sticking.contains(&k) && self.equations.moves(k),
-            None => matches!(passive.modes[k], Mode::AtMin | Mode::AtMax),
+        let held = (0..points.len()).filter_map(|k| {
+            let cause = &passive.list[k].cause;
+            let takes_pushes = sticking.is_empty() && cause.is_contact();
+            let (acts, size) = match cause.friction() {
+                Some(_) => (
+                    sticking.contains(&k) && self.equations.moves(k),
+                    points[k].force,
+                ),
+                None if takes_pushes => (pushes[k] != 0.0, pushes[k]),
+                None => {
+                    let pushes = matches!(passive.modes[k], Mode::AtMin | Mode::AtMax);
+                    (pushes, points[k].force)
+                }
+            };
+            acts.then(|| self.holding(k, size))
         });
         Equilibrium {
             drivers: drivers.collect(),
             q: solver.pose().q.clone(),
-            held,
+            held: held.collect(),
             left_out,
         }
     }
 
-    /// Moves the mechanism to a stable equilibrium while some friction holds.
+    /// Moves the mechanism to a stable equilibrium while some friction holds, and returns the pushes of
+    /// contacts along their coordinates there, zero if friction lets nothing move.
     fn come_down(
         &mut self,
         solver: &mut Solver,
         solution: &mut Solution,
         given: &impl Given,
         sticking: &[usize],
-    ) -> Result<(), Error> {
+    ) -> Result<Vec<f64>, Error> {
         /// Steps far beyond those of any mechanism that has an equilibrium.
         const MOST_STEPS: usize = 200;
         /// A step below this is rounding, some hundred of a place. Halved, most mechanisms end by the
@@ -165,7 +179,7 @@ impl FreeMotion {
             let scales = self.scales();
             let statics = self.statics(solver, sticking, &pushes)?;
             if statics.is_held() {
-                return Ok(());
+                return Ok(pushes);
             }
             let (changes, found) = statics.step(&pushes, &scales);
             pushes = found;
@@ -176,7 +190,7 @@ impl FreeMotion {
             let are_closed = statics.are_closed(&pushes);
             if are_closed && (longest <= AT_REST || is_rounding) {
                 let Some(way) = statics.way_down(&pushes) else {
-                    return Ok(());
+                    return Ok(pushes);
                 };
                 let way = &way * (ASIDE / self::longest(&way, &scales));
                 let gone = self.go_by(solver, &way, false);

@@ -46,18 +46,20 @@ impl FreeMotion {
     /// Returns the contacts and frictions that hold coordinates at the accepted point.
     #[must_use]
     pub fn held(&self) -> Vec<Held> {
-        self.acting(|k| self.equations.passive.is_held(k) && self.equations.moves(k))
-    }
-
-    /// Returns some passive forces at the accepted point.
-    pub(super) fn acting(&self, some: impl Fn(usize) -> bool) -> Vec<Held> {
         let passive = &self.equations.passive;
         let points = self.equations.accepted.passive.iter().enumerate();
-        let held = points.filter(|(k, _)| some(*k)).map(|(k, at)| Held {
-            force: passive.list[k].index,
-            size: at.force,
-            limit: passive.list[k].cause.friction().map(|_| at.bounds[1]),
-        });
-        held.collect()
+        let held = points.filter(|(k, _)| passive.is_held(*k) && self.equations.moves(*k));
+        held.map(|(k, at)| self.holding(k, at.force)).collect()
+    }
+
+    /// Returns what a passive force holds with this size.
+    pub(super) fn holding(&self, force: usize, size: f64) -> Held {
+        let passive = &self.equations.passive.list[force];
+        let at = &self.equations.accepted.passive[force];
+        Held {
+            force: passive.index,
+            size,
+            limit: passive.cause.friction().map(|_| at.bounds[1]),
+        }
     }
 }

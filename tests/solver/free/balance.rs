@@ -274,6 +274,17 @@ fn friction_keeps_a_start_that_it_holds() {
     }
 }
 
+/// What is left out takes no share of a stop's force either.
+#[test]
+fn friction_that_is_left_out_bears_nothing() {
+    let parts =
+        "[stops]\nlow = { of = \"way\", min = 0 }\n[friction]\nf = { of = \"way\", force = 4 }";
+    let mut block = Still::new(&slider(30.0, 1.0, 0.0, parts));
+    let found = block.balance();
+    block.assert_at(&found, &[0.0], &[("low", 2.0 * G * 0.5)]);
+    assert_eq!(found.left_out.len(), 1);
+}
+
 /// A cart of 2 kg with a rod of 1 kg, 0.5 m long to its centre, I = 0.1 kg.m2.
 fn cart(turn: &str, friction: &str) -> String {
     format!(
