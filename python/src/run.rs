@@ -75,6 +75,7 @@ pub(crate) fn run(
     let rows = scenario.times.len();
     runner.start(parameters)?;
     let arrows = ForcePlace::sought(&mut runner.solver, &runner.solution);
+    runner.watch_contacts()?;
     let mut result = Run {
         mechanism: scenario.driven.clone(),
         values: Vec::with_capacity(rows * columns.len()),
@@ -84,7 +85,7 @@ pub(crate) fn run(
         stop: None,
         notices: scenario.whole_angles(),
     };
-    result.notices.extend(runner.overlaps());
+    result.notices.extend(runner.events());
     for row in 0..rows {
         if row > 0 {
             if let Err(stop) = runner.advance(row) {

@@ -5,13 +5,19 @@ use std::f64::consts::TAU;
 
 use biela::dynamics::{self, FreeMotion, FreeState, Given, StateSpace};
 use biela::kinematics::{
-    Blocked, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution, Solver,
-    SolverChoices,
+    Blocked, Budget, Curve, Direction, Error, ForceParts, Output, OutputSource, Path, Pose,
+    Solution, Solver, SolverChoices,
 };
 use biela::mechanism::{DriverId, Jet, Order, show_time};
 
 use crate::error::Failure;
 use crate::scenario::Scenario;
+
+/// The part of the forces that tells whether contacts pull.
+const CONTACTS: ForceParts = ForceParts {
+    efforts: false,
+    reactions: true,
+};
 
 /// Number of variants that one solver runs in a batch: far more work than making the solver.
 pub(crate) const BATCH: usize = 32;
@@ -32,6 +38,8 @@ pub(crate) struct Runner {
     free: Option<(FreeMotion, FreeState)>,
     /// Whether motions that stop do so without a reason, which is cheaper.
     pub(crate) gives_up: bool,
+    /// Whether forces are solved for the sake of contacts that pull alone.
+    watches_contacts: bool,
 }
 
 impl Runner {
@@ -68,6 +76,7 @@ impl Runner {
             near_singular: false,
             held: Vec::new(),
             gives_up: false,
+            watches_contacts: false,
         })
     }
 
@@ -125,6 +134,8 @@ impl Runner {
     ///
     /// Cause of the mechanism's stop, and its place.
     pub(crate) fn advance(&mut self, row: usize) -> Result<(), String> {
+        let budget = Budget::usual(self.solver.mechanism());
+        self.solver.set_budget(budget);
         if self.free.is_some() {
             return self.advance_freely(row);
         }
@@ -294,21 +305,43 @@ impl Runner {
         let texts = approach.map(|approach| approach.to_string()).into_iter();
         let texts = texts.chain(crossed);
         let texts = texts.map(|text| format!("t = {} s: {text}", show_time(time)));
+        let mut notices: Vec<String> = texts.collect();
+        notices.extend(self.events());
+        notices
+    }
+
+    /// Returns the events of a free motion since the last call.
+    pub(crate) fn events(&mut self) -> Vec<String> {
         let mechanism = self.solver.mechanism();
         let events = self.free.iter_mut().flat_map(|(free, _)| free.events());
-        let events = events.map(|event| event.describe(mechanism));
-        let mut notices: Vec<_> = texts.chain(events).collect();
+        let mut notices: Vec<_> = events.map(|event| event.describe(mechanism)).collect();
         notices.extend(self.overlaps());
         notices
     }
 
     /// Returns what has overlapped since the last call, at the start or where inputs jumped.
-    pub(crate) fn overlaps(&mut self) -> Vec<String> {
+    fn overlaps(&mut self) -> Vec<String> {
         let mechanism = self.solver.mechanism();
         let overlaps = self.free.iter_mut().flat_map(|(free, _)| free.overlaps());
         overlaps
             .map(|overlap| overlap.describe(mechanism))
             .collect()
+    }
+
+    /// Watches contacts, which tell where they pull though nobody asks for forces.
+    ///
+    /// # Errors
+    ///
+    /// Rates do not exist at the pose, that of the first row.
+    pub(crate) fn watch_contacts(&mut self) -> Result<(), Error> {
+        let has_dynamics = self.solver.mechanism().has_dynamics();
+        let asks_forces = self.solution.forces().is_some();
+        if has_dynamics && !asks_forces && self.solver.forces().contacts() > 0 {
+            self.solution.seek_forces(&self.solver);
+            self.watches_contacts = true;
+            self.solve(0)?;
+        }
+        Ok(())
     }
 
     /// Returns what is worth knowing of the forces at the pose: contacts that begin to pull.
@@ -401,7 +434,13 @@ impl Runner {
         for samples in &self.scenario.samples {
             self.solution.driver_rates[samples.driver.index()] = samples.at(row);
         }
-        self.solution.solve(&mut self.solver)
+        if !self.watches_contacts {
+            return self.solution.solve(&mut self.solver);
+        }
+        self.solution.solve_rates(&mut self.solver)?;
+        // Forces may exist at fewer poses than the values that are asked for.
+        let _ = self.solution.solve_forces(&mut self.solver, CONTACTS);
+        Ok(())
     }
 }
 

@@ -5,8 +5,16 @@ use super::free::release;
 use super::message::Message;
 use super::signals::Signals;
 use crate::dynamics::{self, FreeMotion};
-use crate::kinematics::{Blocked, Curve, Error, Output, Path, Solution, Solver};
+use crate::kinematics::{
+    Blocked, Budget, Curve, Error, ForceParts, Output, Path, Solution, Solver,
+};
 use crate::mechanism::{DriverId, show_time};
+
+/// The part of the forces that tells whether contacts pull.
+const CONTACTS: ForceParts = ForceParts {
+    efforts: false,
+    reactions: true,
+};
 
 /// A mechanism that moves from one time to the next.
 pub(super) struct Motion {
@@ -20,6 +28,8 @@ pub(super) struct Motion {
     path: Path,
     signals: Signals,
     free: Option<FreeMotion>,
+    /// Whether forces are solved for the sake of contacts that pull alone.
+    watches_contacts: bool,
     /// Whether a notice told of the singular position that is near.
     near_singular: bool,
     /// Whether each driver is beyond its limits.
@@ -51,6 +61,7 @@ impl Motion {
             path,
             signals,
             free: None,
+            watches_contacts: false,
             near_singular: false,
         };
         // Those at the start are told with the mechanism.
@@ -65,9 +76,19 @@ impl Motion {
         self.free = release(&mut self.solver, &self.signals)?;
         if self.free.is_some() {
             self.tell_overlaps();
+            self.note_events();
             self.solve()?;
         }
         Ok(self)
+    }
+
+    /// Notes the events of the free motion.
+    fn note_events(&mut self) {
+        let mechanism = self.solver.mechanism();
+        for event in self.free.iter_mut().flat_map(FreeMotion::events) {
+            self.events.push(event.time);
+            self.notices.push(Message::Note(event.describe(mechanism)));
+        }
     }
 
     /// Describes the work and the error of the integration of freedoms, if there are some.
@@ -90,18 +111,31 @@ impl Motion {
         Ok(self)
     }
 
+    /// Watches contacts, which tell where they pull though nobody asks for forces.
+    pub(super) fn with_contacts_watched(mut self) -> Result<Self, Error> {
+        let has_dynamics = self.solver.mechanism().has_dynamics();
+        if has_dynamics && self.solver.forces().contacts() > 0 {
+            self.solution.seek_forces(&self.solver);
+            self.watches_contacts = true;
+            self.solve()?;
+        }
+        Ok(self)
+    }
+
     /// Returns the current value of an output \[SI\], not a number for forces unless the motion is
     /// [with them](Self::with_forces).
     pub(super) fn value(&self, output: &Output) -> f64 {
         self.solution.value(&self.solver, output)
     }
 
-    /// Moves on to `time`, from one point of the signals to the next.
+    /// Moves on to `time`, from one point of the signals to the next, with the budget of a step.
     ///
     /// # Errors
     ///
     /// Cause of the mechanism's stop, and its place.
     pub(super) fn advance(&mut self, time: f64) -> Result<(), String> {
+        let budget = Budget::usual(self.solver.mechanism());
+        self.solver.set_budget(budget);
         if self.free.is_some() {
             return self.advance_free(time);
         }
@@ -138,11 +172,7 @@ impl Motion {
                 let until = signals.next_point(start).min(time);
                 free.advance(solver, solution, &part, until)
             });
-            let mechanism = solver.mechanism();
-            for event in free.events() {
-                self.events.push(event.time);
-                self.notices.push(Message::Note(event.describe(mechanism)));
-            }
+            self.note_events();
             let moved = moved.map_err(|stop| stop.to_string());
             self.tell_overlaps();
             moved?;
@@ -167,7 +197,15 @@ impl Motion {
         if self.solution.forces().is_some() {
             self.signals.write_forces(time, &mut self.solution.loads);
         }
-        self.solution.solve(&mut self.solver)?;
+        if self.watches_contacts {
+            self.solution.solve_rates(&mut self.solver)?;
+            let solved = self.solution.solve_forces(&mut self.solver, CONTACTS);
+            if solved.is_err() {
+                return Ok(());
+            }
+        } else {
+            self.solution.solve(&mut self.solver)?;
+        }
         let lift_offs = self.solution.lift_offs(&self.solver);
         let notices = lift_offs.map(|lift_off| Message::Warning(lift_off.to_string()));
         self.notices.extend(notices);

@@ -296,6 +296,7 @@ impl Charts {
         if chart.of_solution.is_none() && solution.forces().is_some() {
             chart.of_solution = Some(chart.solver.forces());
         }
+        chart.solver.set_budget(solver.budget());
         std::mem::swap(solver, &mut chart.solver);
         std::mem::swap(forces, &mut chart.of_equations);
         solution.exchange_forces(&mut chart.of_solution);

@@ -257,6 +257,13 @@ impl Equations {
             return Ok(Some(time));
         }
         if let Err(Blocked {
+            reason: Reason::Spent(most),
+            ..
+        }) = tracked
+        {
+            return Err(Error::spent(most, start));
+        }
+        if let Err(Blocked {
             s,
             reason: Reason::Stop(limit),
             ..
@@ -382,6 +389,13 @@ impl Equations {
             }) => {
                 self.is_astray = true;
                 Err(Error::Stop { limit, time })
+            }
+            Err(Blocked {
+                reason: Reason::Spent(most),
+                ..
+            }) => {
+                self.is_astray = true;
+                Err(Error::spent(most, time))
             }
             Err(blocked) => {
                 self.is_astray = true;

@@ -40,11 +40,31 @@ pub enum Error {
         /// Time of the event \[s\].
         time: f64,
     },
-    /// The motion has so many events that it does not go on.
-    #[error("t = {} s: the free motion cannot go on: one event follows the other", fixed(*.time, 9))]
-    TooManyEvents {
-        /// Time of the last one \[s\].
+    /// The [budget](kinematics::Budget) is spent.
+    #[error(
+        "t = {} s: the free motion takes more than {most} sub-steps, with {events} events on the way: \
+         take shorter steps, or look for a force or a speed that is too large",
+        fixed(*.time, 9)
+    )]
+    Spent {
+        /// Number of sub-steps of the budget.
+        most: u32,
+        /// Time that was reached \[s\].
         time: f64,
+        /// Number of events on the way.
+        events: usize,
+    },
+    /// The impacts at one instant come to no end.
+    #[error(
+        "t = {} s: the free motion cannot go on: impacts at one instant come to no end, at {}",
+        fixed(*.time, 9),
+        .contacts.join(", ")
+    )]
+    EndlessImpacts {
+        /// The instant \[s\].
+        time: f64,
+        /// Kind and name of each stop and joint that is struck.
+        contacts: Vec<String>,
     },
     /// The energy of a step is not that of the work done, however short the step.
     #[error(
@@ -74,6 +94,17 @@ pub enum Error {
     Integrator(String),
 }
 
+impl Error {
+    /// Returns the error of a budget that is spent at a time, without events.
+    pub(super) fn spent(most: u32, time: f64) -> Self {
+        Self::Spent {
+            most,
+            time,
+            events: 0,
+        }
+    }
+}
+
 impl From<integrator::Error<Self>> for Error {
     fn from(error: integrator::Error<Self>) -> Self {
         match error {
@@ -88,5 +119,23 @@ impl From<integrator::Error<Self>> for Error {
             } => cause,
             other => Self::Integrator(other.to_string()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Error;
+
+    #[test]
+    fn endless_impacts_name_what_is_struck() {
+        let error = Error::EndlessImpacts {
+            time: 0.25,
+            contacts: ["stop `wall`", "joint `mesh`"].map(str::to_owned).into(),
+        };
+        assert_eq!(
+            error.to_string(),
+            "t = 0.250000000 s: the free motion cannot go on: impacts at one instant come to no end, \
+             at stop `wall`, joint `mesh`"
+        );
     }
 }

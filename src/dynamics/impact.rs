@@ -15,7 +15,7 @@ use super::passive::{Mode, TOUCHED};
 use super::settle::Touch;
 use super::triangular::ascend;
 use crate::kinematics::{Solver, StopLimit};
-use crate::mechanism::{Force, Load, Order, PassiveCause, fixed};
+use crate::mechanism::{Force, Load, Mechanism, Order, PassiveCause, fixed};
 
 /// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
 const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
@@ -73,6 +73,7 @@ impl Equations {
                 rests: false,
             });
             let mut hits: Vec<Hit> = hits.collect();
+            self.share_restitution(solver.mechanism(), &mut hits);
             let start = x.to_vec();
             let energy = self.point.energy;
             let mut impulses = self.strike(solver, &hits, x)?;
@@ -99,8 +100,30 @@ impl Equations {
                 kind: EventKind::Impact { speed: hit.speed },
             }));
         }
-        let why = "impacts at one instant come to no end";
-        Err(Error::Integrator(format!("t = {time} s: {why}")))
+        let mechanism = solver.mechanism();
+        let struck = self.touches().into_iter().map(|touch| {
+            let Force { name, load, .. } = &mechanism.forces[self.passive.list[touch.force].index];
+            let kind = load.play().map_or("stop", |_| "joint");
+            format!("{kind} `{name}`")
+        });
+        Err(Error::EndlessImpacts {
+            time,
+            contacts: struck.collect(),
+        })
+    }
+
+    /// Lets stops of one coordinate that are met together bounce with the smallest of their
+    /// restitutions.
+    fn share_restitution(&self, mechanism: &Mechanism, hits: &mut [Hit]) {
+        let place = |hit: &Hit| {
+            let force = &mechanism.forces[self.passive.list[hit.touch.force].index];
+            (force.load.play(), force.load.coordinate(), hit.touch.side)
+        };
+        for k in 0..hits.len() {
+            let same = hits.iter().filter(|hit| place(hit) == place(&hits[k]));
+            let least = same.map(|hit| hit.restitution).fold(1.0, f64::min);
+            hits[k].restitution = least;
+        }
     }
 
     /// Finds the contacts that come to rest after a strike, as they fall back from a height that is

@@ -11,6 +11,7 @@ use super::charts::Charts;
 use super::equations::Equations;
 use super::error::Error;
 use super::event::Event;
+use super::event::EventKind;
 use super::function::FUNCTIONS;
 use super::given::Given;
 use super::integrator::{ErrorControl, Integrator, Invalid, Method, Statistics};
@@ -29,8 +30,6 @@ const SHORT_OF_END: f64 = 1e-4;
 /// Distance of a held coordinate from its place at which a host's integration is corrected, in gaps that
 /// are rounding: 1e-10 radians or sizes of the mechanism.
 const DRIFT: f64 = 1e4;
-/// Instants of events in one call, far more than a motion has between two rows of a table.
-const MOST_EVENTS: u32 = 20_000;
 
 /// The motion of a mechanism with freedoms: their values and velocities, and the integrator.
 ///
@@ -329,9 +328,18 @@ impl FreeMotion {
         velocity: impl Fn(DriverId) -> f64,
     ) -> Result<(), Error> {
         self.equations.passive.reset();
-        self.go_on_with(solver, given, velocity)?;
-        // The start is none.
         self.events.clear();
+        self.go_on_with(solver, given, velocity)?;
+        // What rests, sticks or is beyond an elastic stop at the start began to do so before.
+        let Equations {
+            passive, accepted, ..
+        } = &self.equations;
+        let is_inside = |event: &Event| {
+            let mut all = passive.list.iter().zip(&accepted.passive);
+            all.any(|(force, at)| force.index == event.force && at.is_inside())
+        };
+        self.events
+            .retain(|event| matches!(event.kind, EventKind::Impact { .. }) && is_inside(event));
         Ok(())
     }
 
@@ -432,7 +440,7 @@ impl FreeMotion {
         let mut end_of_curve = None;
         let start = self.integrator.state().t;
         let resolution = AT_END * start.abs().max((until - start).abs());
-        let mut events = 0;
+        let known = self.events.len();
         let mut corner = solver.next_corner(start, until);
         loop {
             let now = self.integrator.state().t;
@@ -477,12 +485,6 @@ impl FreeMotion {
                     if ends_at_event {
                         return Ok(());
                     }
-                    events += 1;
-                    if events > MOST_EVENTS {
-                        return Err(Error::TooManyEvents {
-                            time: solver.pose().time,
-                        });
-                    }
                 }
                 Ok(_) => {
                     self.exchange(solver, solution, given)?;
@@ -492,6 +494,13 @@ impl FreeMotion {
                     match error {
                         Error::Stop { time, .. } if time - now > resolution => {
                             end_of_curve = Some(now + (1.0 - SHORT_OF_END) * (time - now));
+                        }
+                        Error::Spent { most, .. } => {
+                            return Err(Error::Spent {
+                                most,
+                                time: now,
+                                events: self.events.len() - known,
+                            });
                         }
                         _ => return Err(error),
                     }
@@ -527,7 +536,8 @@ impl FreeMotion {
             overlaps,
             ..
         } = self;
-        equations.settle(solver, given, x, events, overlaps)
+        // Between the velocities before and after an impact no motion can end.
+        solver.overdraw(|solver| equations.settle(solver, given, x, events, overlaps))
     }
 
     /// Returns whether stops or friction act on the freedoms.

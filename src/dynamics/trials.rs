@@ -31,17 +31,13 @@ impl<G: Given> System for Trials<'_, G> {
             ..
         } = self;
         equations.set_drivers(solver, *given, t, x);
-        equations.go(solver, t, None).map_err(Failure::Trial)?;
+        equations.go(solver, t, None).map_err(refused)?;
         let written = equations.write(solver, dx);
         if written.is_ok() {
             equations.note(t);
         }
         let written = written.and_then(|()| equations.vary(solver, x, dx));
-        written.map_err(|error| match error {
-            // No shorter step finds a mass.
-            Error::NoInertia { .. } => Failure::Hard(error),
-            _ => Failure::Trial(error),
-        })
+        written.map_err(refused)
     }
 
     fn jacobian(
@@ -60,12 +56,12 @@ impl<G: Given> System for Trials<'_, G> {
         } = self;
         self.is_stiff = true;
         let differentiated = equations.differentiate(solver, *given, (t, x), jacobian, dx_dt);
-        differentiated.map_err(Failure::Trial)
+        differentiated.map_err(refused)
     }
 
     fn project(&mut self, t: f64, x: &mut [f64]) -> Result<(), Failure<Error>> {
         let projected = self.equations.project(self.solver, self.given, t, x);
-        projected.map_err(Failure::Trial)
+        projected.map_err(refused)
     }
 
     fn accept(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<(), Failure<Error>> {
@@ -82,12 +78,21 @@ impl<G: Given> System for Trials<'_, G> {
         let closes = proved.map_err(|error| match error {
             // The time of a stop is known: no shorter steps have to find it.
             Error::Stop { .. } => Failure::Hard(error),
-            _ => Failure::Trial(error),
+            _ => refused(error),
         })?;
         if let Some(time) = closes {
             return Err(Failure::Cut(time));
         }
         self.equations.accept(self.solver);
         Ok(())
+    }
+}
+
+/// Returns the failure of a trial.
+fn refused(error: Error) -> Failure<Error> {
+    match error {
+        // No shorter step finds a mass, or what is spent.
+        Error::NoInertia { .. } | Error::Spent { .. } => Failure::Hard(error),
+        _ => Failure::Trial(error),
     }
 }

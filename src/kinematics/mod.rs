@@ -82,7 +82,7 @@ pub use constraint::configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, CouplingLaw, JointUnknownId, LawId,
     MarkerPose, ParameterCoefficients, ProfileId,
 };
-pub use continuation::{Blocked, PathWatch, Progress, Reason, SubStep};
+pub use continuation::{Blocked, Budget, PathWatch, Progress, Reason, SubStep};
 pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Remedy, Verdict};
 pub use forces::{
     EquationsOfMotion, ForceParts, ForceQuantity, ForceSensitivity, Forces, Friction, KnownMotion,

@@ -8,7 +8,7 @@ use super::analysis::{
 };
 use super::assembly::estimate::{Move, estimate, moves};
 use super::constraint::Constraint;
-use super::continuation::{Blocked, PathTracker, PathWatch, Progress, check_pose};
+use super::continuation::{Blocked, Budget, PathTracker, PathWatch, Progress, check_pose};
 use super::error::Error;
 use super::forces::{
     self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, Friction, KnownMotion, LiftOff,
@@ -275,6 +275,28 @@ impl Solver {
     pub fn track_or_give_up(&mut self, path: &Path) -> Result<Progress, Blocked> {
         self.tracker
             .track(&mut self.compiled, &mut self.state, path, true)
+    }
+
+    /// Limits the number of sub-steps that are taken from now on: paths that need more are
+    /// [blocked](super::Reason::Spent).
+    pub fn set_budget(&mut self, budget: Budget) {
+        self.tracker.budget = budget;
+    }
+
+    /// Does work whose sub-steps count, and are not limited.
+    pub fn overdraw<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let mut budget = self.budget();
+        self.set_budget(Budget::UNLIMITED);
+        let done = work(self);
+        budget.spend(self.budget().spent());
+        self.set_budget(budget);
+        done
+    }
+
+    /// Returns the budget, with what is left of it.
+    #[must_use]
+    pub fn budget(&self) -> Budget {
+        self.tracker.budget
     }
 
     /// Returns the change points that the last call of [`track`](Self::track) passed, in order.

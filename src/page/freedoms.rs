@@ -1,7 +1,7 @@
 //! The free motion of a session, and its states.
 
 use crate::dynamics::{Error, Event, FreeMotion, FreeState, Given, Overlap};
-use crate::kinematics::{Pose, Solution, Solver, SolverChoices};
+use crate::kinematics::{Budget, Pose, Solution, Solver, SolverChoices};
 use crate::mechanism::{DriverId, Jet, Mechanism};
 
 /// The motion of the freedoms.
@@ -50,8 +50,20 @@ impl Freedoms {
         Ok(true)
     }
 
-    /// Moves on to a time, with the inputs as they are now.
+    /// Moves on to a time, with the inputs as they are now and the budget of a step.
     pub(super) fn advance(
+        &mut self,
+        solver: &mut Solver,
+        solution: &mut Solution,
+        time: f64,
+    ) -> Result<(), Error> {
+        solver.set_budget(Budget::usual(solver.mechanism()));
+        let advanced = self.go_on(solver, solution, time);
+        solver.set_budget(Budget::UNLIMITED);
+        advanced
+    }
+
+    fn go_on(
         &mut self,
         solver: &mut Solver,
         solution: &mut Solution,

@@ -3,8 +3,8 @@
 
 use biela::dynamics::integrator::{ErrorControl, Failure, Integrator, Method, System};
 use biela::fmi::{
-    Call, Causality, Error, Interface, MechanismModel, Quantity, StateChange, StepProgress,
-    Variable, Version, value_reference,
+    Call, Category, Causality, Error, Interface, MechanismModel, Quantity, StateChange,
+    StepProgress, Variable, Version, value_reference,
 };
 use biela::mechanism::Mechanism;
 use std::sync::Arc;
@@ -486,4 +486,24 @@ fn a_force_that_jumps_acts_from_its_step_on() {
         let found = get(&mut instance, ["x.position", "x.velocity"]);
         assert!((found[0] - x).abs() < 1e-12 && (found[1] - v).abs() < 1e-12);
     }
+}
+
+/// A host that has no tolerance may give zero: that of the file is used, without a word.
+#[test]
+fn a_tolerance_of_zero_is_none() {
+    let run = |tolerance: Option<f64>| {
+        let heard = Heard::default();
+        let mechanism = shipped("double_pendulum");
+        let mut instance = heard.instance(mechanism, Interface::CoSimulation, true);
+        tolerance
+            .into_iter()
+            .for_each(|tolerance| instance.set_tolerance(tolerance));
+        let mut instance = started(instance);
+        let bits = go_on(&mut instance, "double_pendulum", None, 0);
+        (bits, heard.take(Category::Warning))
+    };
+    let plain = run(None);
+    assert_eq!(run(Some(0.0)), plain);
+    assert_ne!(run(Some(1e-4)).0, plain.0);
+    assert_ne!(run(Some(-1.0)).1, plain.1);
 }

@@ -6,6 +6,7 @@ mod common;
 #[allow(dead_code, reason = "the tests of the solver use all of it")]
 mod differences;
 
+mod budget;
 mod c_host;
 mod clauses;
 mod fmu_state;

@@ -459,3 +459,40 @@ fn a_wall_that_jumps_takes_a_free_nut_along() {
         assert_eq!(heard.take(Category::Warning), [text], "{interface:?}");
     }
 }
+
+/// A nut that runs into the wall at the start: the log tells it when initialization ends, and once more
+/// after a reset, where initialization ends once more. In model exchange it is an event of the first event
+/// mode.
+#[test]
+fn an_impact_at_the_start_is_logged_once_per_start() {
+    let mechanism = nut(
+        "[freedoms]\nfeed = { coordinate = \"x\", markers = [\"ground.S\", \"nut.N\"], \
+         start = 0.12, velocity = 1 }",
+    );
+    for interface in Interface::ALL {
+        let heard = Heard::default();
+        let impacts = || {
+            let mut told = heard.take(Category::Events);
+            told.retain(|told| told.contains("stop `wall`"));
+            told
+        };
+        let expected = ["t = 0.000000000 s: impact at stop `wall` with 1 m/s"];
+        let mut instance = heard.instance(Arc::clone(&mechanism), interface, true);
+        for _ in 0..2 {
+            instance = started(instance);
+            let told = impacts();
+            assert_eq!(told[..1], expected);
+            assert!(
+                told[1..].iter().all(|told| told.contains("rest at")),
+                "{told:?}"
+            );
+            if interface == Interface::CoSimulation {
+                instance.do_step(0.0, 0.1).expect("it rests there");
+                let [x, v] = get(&mut instance, ["feed.position", "feed.velocity"]);
+                assert_eq!([x, v], [0.12, 0.0]);
+                assert_eq!(impacts(), [] as [&str; 0]);
+            }
+            instance.reset().expect("legal");
+        }
+    }
+}

@@ -241,6 +241,28 @@ def test_a_stop_within_a_step(slave):
     assert warning.startswith("stop `strike` reached: throw = 0.020000000 m"), warning
 
 
+def test_a_step_of_too_much_work(slave):
+    """A sub-step turns the crank by less than a turn: a thousand turns take more than 500. The
+    host goes back and raises the budget, which is tunable."""
+    instance = slave("four_bar").start({"solver.budget": 500})
+    start = instance.get_one("crank_angle.position")
+    before = instance.fmi.getFMUstate()
+    far = start + 2000 * np.pi
+    instance.set({"crank_angle.position": far})
+    with pytest.raises(FMICallException) as failed:
+        instance.step(0.1)
+    assert failed.value.status == DISCARD
+    (warning,) = instance.messages.texts(WARNING)
+    assert "takes more than 500 sub-steps" in warning, warning
+    assert instance.get_one("crank.phi") == start
+
+    instance.fmi.setFMUstate(before)
+    instance.fmi.freeFMUstate(before)
+    instance.set({"solver.budget": 1e5, "crank_angle.position": far})
+    instance.step(0.1)
+    assert instance.get_one("crank.phi") == pytest.approx(far, rel=1e-12)
+
+
 def test_a_start_beyond_a_stop(slave):
     instance = slave("latch")
     with pytest.raises(FMICallException) as failed:

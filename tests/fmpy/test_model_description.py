@@ -93,6 +93,7 @@ def expected_variables(file):
         for place in range(1, 2 * len(file["freedoms"]), 2):
             for name in (f"state[{place}]", f"state[{place + 1}]", f"der(state[{place + 1}])"):
                 yield name, "Real", "local", "continuous", None
+    yield "solver.budget", "Real", "parameter", "tunable", None
 
 
 def expected_forces(file):

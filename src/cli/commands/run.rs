@@ -155,9 +155,10 @@ impl Run {
             recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice, over)));
         }
         let mut motion = Motion::start(home_solver, scenario);
-        if asks_forces {
-            motion = motion.and_then(|motion| motion.with_forces(asks_reactions));
-        }
+        motion = motion.and_then(|motion| match asks_forces {
+            true => motion.with_forces(asks_reactions),
+            false => motion.with_contacts_watched(),
+        });
         let motion = motion.map_err(|error| input.error_at(times.start, &error))?;
         let mut motion = motion.with_freedoms().map_err(|why| Error::Stopped {
             file: input.source.name().to_owned(),

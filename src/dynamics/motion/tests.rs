@@ -68,7 +68,10 @@ fn a_motion_that_loses_energy_stops() {
         };
         // A ten-thousandth of 6 J is lost at once at the least; a thousandth is in no step before.
         let error = free.energy_error().abs();
-        assert!(change.abs() > 1e-9 && error < 6e-3, "{tolerance:e}: {change:e} {error:e}");
+        assert!(
+            change.abs() > 1e-9 && error < 6e-3,
+            "{tolerance:e}: {change:e} {error:e}"
+        );
         assert!((lowest - 1e-3..=lowest + 1e-5).contains(&time), "{time}");
         assert!(solver.pose().time <= time);
     }

@@ -100,6 +100,13 @@ impl Cause for Contact {
 }
 
 impl Passive {
+    /// Returns whether the coordinate is within its limits, to rounding.
+    pub(in crate::dynamics) fn is_inside(&self) -> bool {
+        let gaps = self.gaps();
+        gaps.iter()
+            .all(|gap| *gap >= -TOUCHED * self.gap_rounding())
+    }
+
     /// Returns the gaps at the least and at the largest value.
     pub(in crate::dynamics) fn gaps(&self) -> [f64; 2] {
         let [least, most] = self.bounds;

@@ -288,9 +288,12 @@ impl<M: Model> Instance<M> {
             })
     }
 
-    /// Takes the host's tolerance, with which a model that integrates works.
+    /// Takes the host's tolerance, with which a model that integrates works. Some hosts give zero where
+    /// they have none.
     pub fn set_tolerance(&mut self, tolerance: f64) {
-        self.model.set_tolerance(tolerance, &self.logger);
+        if tolerance != 0.0 {
+            self.model.set_tolerance(tolerance, &self.logger);
+        }
     }
 
     /// `fmi2SetupExperiment`: start and stop time \[s\].

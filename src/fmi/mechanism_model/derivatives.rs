@@ -47,6 +47,8 @@ impl MechanismModel {
                     direction.parameters[parameter.index()] += change;
                 }
                 Quantity::Time => direction.time += change,
+                // No value depends on it.
+                Quantity::Budget => {}
                 Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order))
                 | Quantity::State(freedom, order) => {
                     let state = &mut direction.drivers[freedom.index()];

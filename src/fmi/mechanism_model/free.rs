@@ -6,10 +6,11 @@
 use super::force_input::ForceInput;
 use super::input::DriverInput;
 use super::{Course, MechanismModel, failed, without_value};
-use crate::dynamics::{FreeMotion, Given, Mode};
+use crate::dynamics::{FreeMotion, Given};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::kinematics::{Curve, Path, Progress};
+use crate::fmi::state::Interface;
+use crate::kinematics::{Curve, Path};
 use crate::mechanism::{DriverId, Jet, Order};
 
 /// The inputs in force during a step, or a part of one. What jumps does so at the start.
@@ -60,9 +61,11 @@ impl MechanismModel {
     ) -> Result<(), Failure> {
         let start = self.path.start;
         let h = self.path.duration;
-        self.course.path_progress = Progress::default();
-        let followed = self.integrate(end, log);
-        self.course.progress = self.course.path_progress;
+        let before = std::mem::take(&mut self.course.path_progress);
+        let followed = self.integrate(end, stayed.is_some(), log);
+        if stayed.is_none() || followed.is_ok() {
+            self.course.progress = self.course.path_progress;
+        }
         match (followed, stayed) {
             (Err(Failure::Event), _) => {
                 self.stop_free(start, h);
@@ -78,6 +81,7 @@ impl MechanismModel {
                 Ok(())
             }
             (Err(failure), Some(was_current)) => {
+                self.course.path_progress = before;
                 self.stay_at_committed(was_current);
                 Err(failure)
             }
@@ -95,7 +99,7 @@ impl MechanismModel {
     /// As [`take_free_step`](Self::take_free_step).
     pub(super) fn follow_free(&mut self, end: f64, log: &Logger) -> Result<(), Failure> {
         let (start, h) = (self.path.start, self.path.duration);
-        let followed = self.integrate(end, log);
+        let followed = self.integrate(end, false, log);
         if followed.is_err() {
             self.stop_free(start, h);
         }
@@ -112,8 +116,9 @@ impl MechanismModel {
         self.commit_pose();
     }
 
-    /// Moves the mechanism to the time `end`, and notes the values of its freedoms there.
-    fn integrate(&mut self, end: f64, log: &Logger) -> Result<(), Failure> {
+    /// Moves the mechanism to the time `end`, and notes the values of its freedoms there; with `stays` only
+    /// if it can.
+    fn integrate(&mut self, end: f64, stays: bool, log: &Logger) -> Result<(), Failure> {
         let Self {
             free: Some(free),
             solver,
@@ -140,6 +145,10 @@ impl MechanismModel {
             .resume(solver, state)
             .and_then(|()| free.jump(solver, &given, &path.to))
             .and_then(|()| advance(free, solver, solution, &given, end));
+        if stays && let Err(error) = &moved {
+            free.events().for_each(drop);
+            return Err(Failure::Discarded(self.describe_stop(error)));
+        }
         free.save(state);
         let reached = state.integrator.t;
         let taken = free.statistics().accepted.wrapping_sub(steps);
@@ -149,7 +158,7 @@ impl MechanismModel {
         self.log_crossings(log);
         self.log_events(log);
         self.report_overlaps(log);
-        moved.map_err(|error| Failure::Discarded(error.to_string()))?;
+        moved.map_err(|error| Failure::Discarded(self.describe_stop(&error)))?;
         match reached < end {
             true => Err(Failure::Event),
             false => Ok(()),
@@ -163,11 +172,16 @@ impl MechanismModel {
     ///
     /// Freedoms have no acceleration there.
     pub(super) fn settle_freedoms(&mut self, log: &Logger) -> Result<(), Failure> {
-        if let Some(state) = &mut self.course.free {
-            state.modes.fill((Mode::Free, 0.0));
-        }
-        self.settle()?;
+        self.settle(true)?;
         self.report_overlaps_at_start(log);
+        if self.interface == Interface::ModelExchange {
+            // They happen in event mode, once more.
+            self.free
+                .iter_mut()
+                .flat_map(FreeMotion::events)
+                .for_each(drop);
+        }
+        self.log_events(log);
         self.commit_settled();
         Ok(())
     }
@@ -187,8 +201,9 @@ impl MechanismModel {
         (self.free.as_ref()).is_some_and(FreeMotion::has_passive_forces)
     }
 
-    /// Takes the committed pose and the states that the host has set for those of the motion.
-    fn settle(&mut self) -> Result<(), Failure> {
+    /// Takes the committed pose and the states that the host has set for those of the motion, which goes
+    /// on, or `starts`.
+    fn settle(&mut self, starts: bool) -> Result<(), Failure> {
         if self.free.is_none() {
             return Ok(());
         }
@@ -211,7 +226,10 @@ impl MechanismModel {
         let state = course.free.as_mut().expect("made with the motion");
         // Nothing is left of a run before a reset, such as the length of its steps.
         free.resume(solver, state)
-            .and_then(|()| free.go_on_with(solver, &given, velocity))
+            .and_then(|()| match starts {
+                true => free.restart(solver, &given, velocity),
+                false => free.go_on_with(solver, &given, velocity),
+            })
             .map_err(failed)?;
         free.save(state);
         Ok(())
@@ -296,7 +314,7 @@ impl MechanismModel {
             inputs.map(values).collect()
         };
         let before = states(&self.course);
-        self.settle()?;
+        self.settle(false)?;
         self.log_events(log);
         if std::mem::take(&mut self.has_jumped) {
             self.report_overlaps(log);

@@ -5,12 +5,15 @@ use std::f64::consts::PI;
 use super::MechanismModel;
 use super::monitor::Contradiction;
 use super::rule::Source;
-use crate::dynamics::FreeMotion;
+use crate::dynamics::{self, FreeMotion};
 use crate::fmi::log::{Advice, Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
 use crate::mechanism::{Driver, DriverId, Order, RateSource, rounded, show_time, shown};
+
+/// The host's way out where the budget of a step is spent.
+const RAISE: &str = "set `solver.budget` higher";
 
 impl MechanismModel {
     /// Describes why the path was not followed to its end: the drivers that may be the cause, their
@@ -75,6 +78,12 @@ impl MechanismModel {
                 );
                 "given up"
             }
+            Reason::Spent(most) => {
+                parts.push(format!(
+                    "the step takes more than {most} sub-steps: take shorter steps, or {RAISE}"
+                ));
+                "given up"
+            }
             Reason::Singular(point) => &point.to_string(),
             Reason::Stop(limit) => &limit.to_string(),
             Reason::Jump(driver) => {
@@ -90,6 +99,17 @@ impl MechanismModel {
             show_time(h),
             parts.join("; ")
         )
+    }
+
+    /// Describes why the free motion was not followed to the end of the path.
+    pub(super) fn describe_stop(&self, error: &dynamics::Error) -> String {
+        match error {
+            dynamics::Error::Spent { .. } => {
+                let [start, h] = [self.path.start, self.path.duration].map(show_time);
+                format!("given up in the step from {start} s over {h} s: {error}, or {RAISE}")
+            }
+            _ => error.to_string(),
+        }
     }
 
     /// Returns whether a driver may be the cause of a stop. At a singular position it has to move an

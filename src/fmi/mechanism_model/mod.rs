@@ -59,7 +59,8 @@ use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::dynamics::{FreeMotion, FreeState, KeptStart, Overlap};
 use crate::kinematics::{
-    self, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices, offer_start,
+    self, Budget, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
+    offer_start,
 };
 use crate::mechanism::{
     Driver, DriverId, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource, Signal,
@@ -120,6 +121,8 @@ struct Course {
     /// Parameters as set by the host, and those derived from them.
     parameters: Vec<f64>,
     rule: Rule,
+    /// Most sub-steps of a call, at least 1.
+    budget: f64,
     /// Pose from which the mechanism goes on; in co-simulation that of the last communication
     /// point.
     committed: Pose,
@@ -172,6 +175,7 @@ impl Course {
                 rates: mechanism.simulation.rates,
                 extrapolation: mechanism.simulation.extrapolation,
             },
+            budget: Budget::usual(mechanism).most().into(),
             committed: Pose::clone(start),
             committed_choices: choices.clone(),
             committed_rates: vec![Jet::constant(0.0); drivers],
@@ -396,6 +400,10 @@ impl Model for MechanismModel {
                 Quantity::Parameter(parameter) => {
                     self.set_parameter(parameter, value);
                     parameters_changed = true;
+                }
+                Quantity::Budget => {
+                    self.course.budget = value;
+                    self.reals.invalidate();
                 }
                 Quantity::Output(OutputSource::Signal(Signal::Motion(freedom), order))
                 | Quantity::State(freedom, order) => self.set_input(freedom, order, value),

@@ -73,6 +73,7 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
         Quantity::Input(..)
         | Quantity::ForceInput(_)
         | Quantity::Parameter(_)
+        | Quantity::Budget
         | Quantity::Time
         | Quantity::Iterations
         | Quantity::Substeps
@@ -252,6 +253,7 @@ impl MechanismModel {
                 Quantity::Input(driver, order) => self.course.inputs[driver.index()].get(order),
                 Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.course.parameters[parameter.index()],
+                Quantity::Budget => self.course.budget,
                 Quantity::Time => self.course.time,
                 Quantity::EventIndicator(index) => {
                     let free = self.free.as_ref();

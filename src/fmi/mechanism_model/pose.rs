@@ -8,7 +8,7 @@ use super::{Course, Freshness, MechanismModel, failed, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::{Advice, Logger};
 use crate::fmi::state::{Interface, Phase};
-use crate::kinematics::{Blocked, Curve};
+use crate::kinematics::{Blocked, Budget, Curve};
 use crate::mechanism::{DriverId, DriverSource, Order, RateSource};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
@@ -128,9 +128,11 @@ impl MechanismModel {
     }
 
     /// Sets the path from the committed pose to the values in force at the end of a step of size
-    /// `h` from `start`; with `h = 0` to the values set.
+    /// `h` from `start`; with `h = 0` to the values set. The solver gets its whole budget for it.
     pub(super) fn set_path(&mut self, start: f64, h: f64) {
         let rule = self.rule();
+        // A saturating cast.
+        (self.solver).set_budget(Budget::of(self.course.budget as u32));
         let (path, committed) = (&mut self.path, &self.course.committed);
         path.start = start;
         path.duration = h;

@@ -73,12 +73,14 @@ impl MechanismModel {
         self.mechanism
             .derive_parameters(&mut state.course.parameters);
         for variable in &self.variables {
-            if variable.causality == Causality::Parameter
-                && let Quantity::Parameter(parameter) = variable.quantity
-            {
-                let value = state.course.parameters[parameter.index()];
-                check_value(variable, value).map_err(|error| error.to_string())?;
-            }
+            let value = match variable.quantity {
+                Quantity::Parameter(parameter) if variable.causality == Causality::Parameter => {
+                    state.course.parameters[parameter.index()]
+                }
+                Quantity::Budget => state.course.budget,
+                _ => continue,
+            };
+            check_value(variable, value).map_err(|error| error.to_string())?;
         }
         self.check_free(self.file_free.clone().as_ref())?;
         self.check_pose(&state.course.start_pose)?;
@@ -148,6 +150,7 @@ impl MechanismState {
             start_pose,
             parameters,
             rule,
+            budget,
             committed,
             committed_choices,
             committed_rates,
@@ -181,6 +184,7 @@ impl MechanismState {
         codec.each(parameters, Codec::real)?;
         codec.one_of(&mut rule.rates, &RateSource::ALL)?;
         codec.one_of(&mut rule.extrapolation, &Extrapolation::ALL)?;
+        codec.finite(budget)?;
         for (input, monitor) in inputs.iter_mut().zip(monitors) {
             input.visit(codec)?;
             monitor.visit(codec)?;

@@ -7,13 +7,13 @@ use super::decisions::Decisions;
 use super::rule::{EXTRAPOLATION, RATES};
 use crate::dynamics::{self, KeptStart};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
-use crate::kinematics::{Dependencies, Output, OutputSource};
+use crate::kinematics::{Budget, Dependencies, Output, OutputSource};
 use crate::mechanism::{
     Driver, DriverId, DriverSource, Mechanism, Order, ParameterId, Signal, Unit,
 };
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
-pub const TABLE_VERSION: u32 = 3;
+pub const TABLE_VERSION: u32 = 4;
 /// Version of the variables of forces, part of the GUID of mechanisms with dynamics.
 pub(super) const FORCE_TABLE_VERSION: u32 = 1;
 
@@ -44,6 +44,8 @@ pub enum Quantity {
     Iterations,
     /// Sub-steps of the last step.
     Substeps,
+    /// Most sub-steps of a call.
+    Budget,
     /// Whether the last step was proved throughout.
     Proved,
     /// Time.
@@ -53,7 +55,7 @@ pub enum Quantity {
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
 /// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
 /// from others, forces, solver, time, states that are no outputs, event indicators; in the file's
-/// order within each group.
+/// order within each group; the solver's budget at the end.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
     let kept = KeptStart::of(mechanism);
@@ -87,6 +89,7 @@ pub(super) fn variables_of(
         table.add_local_states(mechanism);
     }
     table.add_event_indicators(mechanism);
+    table.add_budget(mechanism);
     table.list
 }
 
@@ -280,6 +283,25 @@ impl Table {
                 Kind::real(None, None),
             );
         }
+    }
+
+    /// Adds the number of sub-steps that a call may take. It is tunable: a host may repeat a step with a
+    /// larger one.
+    fn add_budget(&mut self, mechanism: &Mechanism) {
+        self.add(
+            "solver.budget",
+            "most sub-steps of a call, those to trial poses of a free motion included; a step that \
+             needs more is discarded",
+            Quantity::Budget,
+            (Causality::Parameter, Variability::Tunable),
+            Kind::Real {
+                unit: Some(Unit::ONE),
+                start: Some(Budget::usual(mechanism).most().into()),
+                min: Some(1.0),
+                max: None,
+                nominal: None,
+            },
+        );
     }
 
     fn add_solver(&mut self) {

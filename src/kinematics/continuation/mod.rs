@@ -5,12 +5,14 @@
 //! [certificate](super::certificate) that one and only one continuous motion joins its two ends;
 //! otherwise it is shortened by the ratio that the certificate gives.
 
+mod budget;
 mod driver_bounds;
 mod outcome;
 mod stops;
 mod sub_step;
 mod tracker;
 
+pub use budget::Budget;
 pub use outcome::{Blocked, Progress, Reason};
 pub(super) use stops::check_pose;
 pub use sub_step::{PathWatch, SubStep};

@@ -31,6 +31,8 @@ pub enum Reason {
     TooLong,
     /// It needs as many because the mechanism stays next to a singular position.
     NearSingular,
+    /// The [budget](super::Budget) of this many sub-steps is spent.
+    Spent(u32),
 }
 
 /// The work spent on a path.
@@ -107,6 +109,7 @@ impl Blocked {
                 "next to a singular position the motion needs more sub-steps than the solver takes"
                     .to_owned()
             }
+            Reason::Spent(most) => format!("the motion takes more than {most} sub-steps"),
             Reason::Singular(point) => point.to_string(),
             Reason::Stop(limit) => limit.to_string(),
             Reason::Jump(driver) => {

@@ -9,6 +9,7 @@ use length::HALF;
 pub(in crate::kinematics) use pace::most_substeps;
 use pace::{Pace, Verdict};
 
+use super::budget::Budget;
 use super::driver_bounds::bound_drivers;
 use super::outcome::{Blocked, Progress, Reason};
 use super::stops::StopWatch;
@@ -43,6 +44,7 @@ pub(in crate::kinematics) struct PathTracker {
     stops: StopWatch,
     /// Whether paths lead through stops, as searches for a pose do.
     ignores_stops: bool,
+    pub(in crate::kinematics) budget: Budget,
 }
 
 impl PathTracker {
@@ -56,6 +58,7 @@ impl PathTracker {
             fruitless: FruitlessSearches::default(),
             stops: StopWatch::new(compiled.stops.len()),
             ignores_stops: false,
+            budget: Budget::UNLIMITED,
         }
     }
 
@@ -139,17 +142,21 @@ impl PathTracker {
             is_halved: false,
             is_last_attempt: false,
             gives_up,
+            budget: self.budget,
             pace: Pace::default(),
             expected: None,
             searched: 0.0,
             progress: Progress::default(),
         };
-        match run.run() {
-            Ok(()) => Ok(run.progress),
+        let ended = run.run();
+        let (s, progress) = (run.s, run.progress);
+        self.budget.spend(progress.substeps);
+        match ended {
+            Ok(()) => Ok(progress),
             Err(reason) => Err(Blocked {
-                s: run.s,
+                s,
                 reason,
-                progress: run.progress,
+                progress,
             }),
         }
     }
@@ -183,6 +190,8 @@ struct Run<'a> {
     is_last_attempt: bool,
     /// Whether it stops in front of singular positions without looking for them.
     gives_up: bool,
+    /// The budget at the start of the path.
+    budget: Budget,
     pace: Pace,
     /// The place on the path of the singular position that slowed the motion down when its pace was
     /// judged last.
@@ -329,6 +338,9 @@ impl Run<'_> {
     ///
     /// The cause of a stop if they are too many, or would be at the pace of the last ones.
     fn judge_pace(&mut self) -> Result<(), Reason> {
+        if self.progress.substeps >= self.budget.left {
+            return Err(Reason::Spent(self.budget.most()));
+        }
         let most = || {
             let CompiledMechanism { system, plan, .. } = &*self.compiled;
             let moved = || [system.equations().len(), self.state.at.profiles().len()];

@@ -503,3 +503,48 @@ fn impossible_numbers_are_named() {
         );
     }
 }
+
+/// What closes at the start meets there; what lies or sticks at the start began to do so before.
+#[test]
+fn an_impact_at_the_start_is_an_event_and_rest_is_none() {
+    let stop = "[stops]\nbottom = { of = \"way\", min = 0, restitution = 0.5 }";
+    let meets = EventKind::Impact { speed: 2.0 };
+    // From 1 m/s upwards it is back after 2 v / g.
+    let again = EventKind::Impact { speed: 1.0 };
+    let run = |velocity| {
+        Run::new(
+            &parse(&slider(90.0, 0.0, velocity, stop)),
+            TOLERANCE,
+            Fed::default(),
+        )
+    };
+    let mut falls = run(-2.0);
+    let events = played(&mut falls, 2.5 / G, 3);
+    assert_events(&events, &[(0.0, meets), (2.0 / G, again)]);
+    assert_eq!(played(&mut run(0.0), 1.0, 3), []);
+    let rubs = "[friction]\nrail = { of = \"way\", force = 0.5 }";
+    let mut sticks = Run::new(
+        &parse(&slider(0.0, 0.0, 0.0, rubs)),
+        TOLERANCE,
+        Fed::default(),
+    );
+    assert_eq!(played(&mut sticks, 1.0, 3), []);
+}
+
+/// Two stops at one place act as one, with the smaller restitution, whichever the file names first.
+#[test]
+fn two_stops_at_one_place_take_the_smaller_restitution() {
+    for [first, second] in [[0.8, 0.2], [0.2, 0.8]] {
+        let stops = format!(
+            "[stops]\none = {{ of = \"way\", min = 0, restitution = {first} }}\n\
+             other = {{ of = \"way\", min = 0, restitution = {second} }}"
+        );
+        let text = slider(0.0, 1.0, -2.0, &stops);
+        let mut run = Run::new(&parse(&text), TOLERANCE, Fed::default());
+        played(&mut run, 1.0, 3);
+        // It is there after half a second, and goes back with a fifth of its speed.
+        for (value, truth) in run.state().into_iter().zip([0.2, 0.4]) {
+            assert_near(value, truth);
+        }
+    }
+}

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use biela::dynamics::integrator::Statistics;
 use biela::dynamics::{Error, FreeMotion, Given};
-use biela::kinematics::{Solution, Solver};
+use biela::kinematics::{Budget, Solution, Solver};
 use biela::mechanism::{DriverId, Jet, Mechanism, Signal};
 
 use super::minimal::Minimal;
@@ -97,6 +97,7 @@ impl Run {
         solved.expect("the pose is regular");
     }
 
+    /// Moves on to a time, with the budget of a step: no honest motion meets it.
     pub(super) fn try_to(&mut self, time: f64) -> Result<(), Error> {
         let Self {
             solver,
@@ -105,6 +106,7 @@ impl Run {
             fed,
             ..
         } = self;
+        solver.set_budget(Budget::usual(solver.mechanism()));
         free.advance(solver, solution, fed, time)?;
         self.solve();
         self.residual = self.residual.max(self.solver.residual());
