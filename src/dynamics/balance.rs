@@ -16,7 +16,7 @@ use super::given::Given;
 use super::held::Held;
 use super::motion::FreeMotion;
 use super::passive::Mode;
-use super::statics::{Side, Statics};
+use super::statics::{Side, Statics, longest};
 use crate::kinematics::{Blocked, Curve, Path, Rates, Reason, Solution, Solver};
 use crate::mechanism::{DriverId, Order, Signal};
 
@@ -183,21 +183,21 @@ impl FreeMotion {
             }
             let (changes, found) = statics.step(&pushes, &scales);
             pushes = found;
-            let longest = longest(&changes, &scales);
-            let is_rounding = longest <= NEARLY_AT_REST && longest > 0.5 * before;
-            before = longest;
+            let length = longest(&changes, &scales);
+            let is_rounding = length <= NEARLY_AT_REST && length > 0.5 * before;
+            before = length;
             // A contact that pushes has to be closed, to be seen.
             let are_closed = statics.are_closed(&pushes);
-            if are_closed && (longest <= AT_REST || is_rounding) {
+            if are_closed && (length <= AT_REST || is_rounding) {
                 let Some(way) = statics.way_down(&pushes) else {
                     return Ok(pushes);
                 };
-                let way = &way * (ASIDE / self::longest(&way, &scales));
+                let way = &way * (ASIDE / longest(&way, &scales));
                 let gone = self.go_by(solver, &way, false);
                 gone.map_err(|error| blocked(solver, &error))?;
                 continue;
             }
-            let part = (LONGEST / longest).min(1.0);
+            let part = (LONGEST / length).min(1.0);
             self.go_down(solver, given, &statics, &pushes, changes * part)?;
         }
         Err(Error::NoEquilibrium)
@@ -317,14 +317,6 @@ impl FreeMotion {
         self.x[own.len()..].fill(0.0);
         self.change_chart(solver, solution, own)
     }
-}
-
-/// Returns the longest of these changes, in scales.
-pub(super) fn longest(changes: &DVector<f64>, scales: &[f64]) -> f64 {
-    let parts = changes.iter().zip(scales);
-    parts.fold(0.0, |longest, (change, scale)| {
-        longest.max((change / scale).abs())
-    })
 }
 
 /// Returns the error of a way that ends.

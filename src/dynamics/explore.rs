@@ -5,10 +5,11 @@ use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
-use super::balance::{Equilibrium, LONGEST, longest};
+use super::balance::{Equilibrium, LONGEST};
 use super::error::Error;
 use super::given::Given;
 use super::motion::FreeMotion;
+use super::statics::longest;
 use crate::kinematics::{Blocked, Pose, Reason, Solution, Solver};
 
 /// A pose, with the coordinates of its solver.

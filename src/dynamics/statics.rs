@@ -5,7 +5,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::balance::longest;
 use super::bounded;
 use super::equations::Equations;
 use super::error::Error;
@@ -369,5 +368,13 @@ fn complement(columns: &DMatrix<f64>) -> DMatrix<f64> {
     }
     DMatrix::from_fn(count, basis.len() - taken, |row, column| {
         basis[taken + column][row]
+    })
+}
+
+/// Returns the longest of these changes, in scales.
+pub(super) fn longest(changes: &DVector<f64>, scales: &[f64]) -> f64 {
+    let parts = changes.iter().zip(scales);
+    parts.fold(0.0, |longest, (change, scale)| {
+        longest.max((change / scale).abs())
     })
 }

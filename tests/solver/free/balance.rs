@@ -274,7 +274,7 @@ fn friction_keeps_a_start_that_it_holds() {
     }
 }
 
-/// What is left out takes no share of a stop's force either.
+/// Friction that is left out takes no share of a stop's force either.
 #[test]
 fn friction_that_is_left_out_bears_nothing() {
     let parts =

@@ -462,7 +462,10 @@ right = {{ type = "link", markers = ["carriage.P", "seat.B"], length = {length:?
 impl Case {
     /// The mechanism with one of the sets as its freedoms; all coordinates are measured.
     fn text(&self, set: usize, states: &[[f64; 2]]) -> String {
-        let mut text = format!("format = 1\nname = \"case\"\n{}[freedoms]\n", self.parts);
+        let mut text = format!(
+            "format = 1\nname = \"coordinates\"\n{}[freedoms]\n",
+            self.parts
+        );
         for (k, (coordinate, [start, velocity])) in self.sets[set].iter().zip(states).enumerate() {
             // The estimates say where the good ones start.
             let start = match start.is_nan() {

@@ -72,6 +72,14 @@ impl Alignment {
                     .map(|place| &events[side][*place])
                     .collect::<Vec<_>>()
             });
+            let undone = [0, 1].map(|side| match here[side][..] {
+                [first, second, ..] => is_undone(first, second, short),
+                _ => false,
+            });
+            if undone[0] != undone[1] {
+                at[usize::from(undone[1])] += 2;
+                continue;
+            }
             let firsts = [here[0].first(), here[1].first()];
             let is_same = match firsts {
                 [None, None] => return,
@@ -83,7 +91,7 @@ impl Alignment {
                 at = at.map(|at| at + 1);
                 continue;
             }
-            let skipped = [0, 1].map(|side| skipped(&here[side], short));
+            let skipped = here.each_ref().map(|events| skipped(events));
             match skipped {
                 [0, 0] => {
                     let mut odd: Vec<_> = firsts.into_iter().flatten().collect();
@@ -116,10 +124,9 @@ fn is_same(one: &Happening, other: &Happening) -> bool {
 }
 
 /// Returns how many events may be passed over.
-fn skipped(events: &[&Happening], short: f64) -> usize {
+fn skipped(events: &[&Happening]) -> usize {
     match events {
         [first, ..] if first.speed() < 2.0 * SLOW => 1,
-        [first, second, ..] if is_undone(first, second, short) => 2,
         _ => 0,
     }
 }
