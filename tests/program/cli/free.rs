@@ -183,3 +183,57 @@ fn a_hanging_rod_is_linear() {
         assert!((value - expected).abs() < 1e-13, "{matrix}: {value}");
     }
 }
+
+/// m g a cos(30°) = 9.81 N.m * cos(30°) on the stop. There the rod does not move.
+#[test]
+fn a_rod_rests_on_a_stop_and_is_held() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rod.toml");
+    let text = ROD.replace("START", "20") + "stops.low = { of = \"swing\", min = \"-30*deg\" }\n";
+    std::fs::write(&file, text).expect("it can be written");
+    let file = file.to_str().expect("UTF-8");
+    let told = stdout(&biela(&["balance", file]).success());
+    assert!(
+        told.starts_with("balanced at\n  swing = -30.000000 deg\n  on stop `low`, 8.49571 N.m\n"),
+        "{told}"
+    );
+    let run = biela(&["linearize", file, "--balance", "--variables", "rod.phi"]).success();
+    let note = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+    assert!(
+        note.contains("on stop `low`, 8.49571 N.m: what is held"),
+        "{note}"
+    );
+    let found: Value = serde_json::from_str(&stdout(&run)).expect("JSON");
+    let force = found["held"]["low"].as_f64().expect("a number");
+    assert!(
+        (force - 9.81 * 30.0_f64.to_radians().cos()).abs() < 1e-10,
+        "{force}"
+    );
+    for row in 0..2 {
+        for column in 0..2 {
+            let entry = found["A"][row][column].as_f64().expect("a number");
+            assert!(entry.abs() < 1e-12, "{entry}");
+        }
+    }
+}
+
+/// Friction that holds the start is told with its limit, what gives way is told to be left out.
+#[test]
+fn friction_holds_or_is_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rod.toml");
+    for (force, place, told) in [
+        (
+            12,
+            "0.000000 deg",
+            "friction `pin` sticks, 9.81 N.m of up to 12 N.m",
+        ),
+        (9, "-90.000000 deg", "friction `pin` is left out"),
+    ] {
+        let friction = format!("friction.pin = {{ of = \"swing\", force = {force} }}\n");
+        std::fs::write(&file, ROD.replace("START", "0") + &friction).expect("it can be written");
+        let found = stdout(&biela(&["balance", file.to_str().expect("UTF-8")]).success());
+        let expected = format!("balanced at\n  swing = {place}\n  {told}\n");
+        assert!(found.starts_with(&expected), "{found}");
+    }
+}

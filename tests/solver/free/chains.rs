@@ -29,7 +29,7 @@ impl Random {
 
 /// A chain of one to three rods that hangs from a slider or from ground, each joint with a stop, with
 /// friction, with both or with neither.
-fn chain(random: &mut Random) -> String {
+pub(super) fn chain(random: &mut Random) -> String {
     let has_slider = random.number() < 0.5;
     let rods = 1 + (random.number() * 3.0) as usize;
     let mut bodies = String::new();
