@@ -330,7 +330,7 @@ impl FreeMotion {
         self.equations.passive.reset();
         self.events.clear();
         self.go_on_with(solver, given, velocity)?;
-        // What rests, sticks or is beyond an elastic stop at the start began to do so before.
+        // Rest, sticking and the push of an elastic stop have begun before the start.
         let Equations {
             passive, accepted, ..
         } = &self.equations;

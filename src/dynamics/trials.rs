@@ -70,10 +70,10 @@ impl<G: Given> System for Trials<'_, G> {
             Verdict::Ends(time) => return Err(Failure::Cut(time)),
             Verdict::Unclear => return Err(Failure::Unclear),
         }
-        if !self.is_stiff {
-            let balances = self.equations.balance(self.solver, self.tolerance);
-            balances.map_err(Failure::Trial)?;
-        }
+        let balances = self
+            .equations
+            .balance(self.solver, self.tolerance, self.is_stiff);
+        balances.map_err(Failure::Trial)?;
         let proved = self.equations.prove(self.solver, self.given);
         let closes = proved.map_err(|error| match error {
             // The time of a stop is known: no shorter steps have to find it.

@@ -57,7 +57,7 @@ fn a_free_motion_that_takes_too_long_is_discarded_and_leaves_no_trace() {
     let (mut straight, mut tried) = (begin(), begin());
     set(
         &mut tried,
-        [("solver.budget", 3000.0), ("motor.effort", TOO_LARGE)],
+        [("solver.budget", 30_000.0), ("motor.effort", TOO_LARGE)],
     );
     let why = discarded(tried.begin_step(STEP, STEP));
     assert!(
@@ -65,7 +65,7 @@ fn a_free_motion_that_takes_too_long_is_discarded_and_leaves_no_trace() {
             && !why.contains("t = 0.100000000 s"),
         "{why}"
     );
-    assert!(why.contains("takes more than 3000 sub-steps"), "{why}");
+    assert!(why.contains("takes more than 30000 sub-steps"), "{why}");
     assert!(why.contains("set `solver.budget` higher"), "{why}");
     let [budget] = get(&mut straight, ["solver.budget"]);
     set(
@@ -78,7 +78,7 @@ fn a_free_motion_that_takes_too_long_is_discarded_and_leaves_no_trace() {
     assert_eq!(bits(&mut tried), bits(&mut straight));
 }
 
-/// Where the host permits an early return, it goes on from where the motion was given up, and meets the
+/// A host that permits an early return goes on from where the motion was given up, and meets the
 /// same instants again: small budgets in turn lead where a large one does.
 #[test]
 fn an_early_return_goes_on_with_a_new_budget() {

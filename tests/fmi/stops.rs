@@ -461,8 +461,8 @@ fn a_wall_that_jumps_takes_a_free_nut_along() {
 }
 
 /// A nut that runs into the wall at the start: the log tells it when initialization ends, and once more
-/// after a reset, where initialization ends once more. In model exchange it is an event of the first event
-/// mode.
+/// after a reset, where initialization ends once more. The states are those after it
+/// already.
 #[test]
 fn an_impact_at_the_start_is_logged_once_per_start() {
     let mechanism = nut(

@@ -9,7 +9,6 @@ use super::{Course, MechanismModel, failed, without_value};
 use crate::dynamics::{FreeMotion, Given};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::fmi::state::Interface;
 use crate::kinematics::{Curve, Path};
 use crate::mechanism::{DriverId, Jet, Order};
 
@@ -174,13 +173,6 @@ impl MechanismModel {
     pub(super) fn settle_freedoms(&mut self, log: &Logger) -> Result<(), Failure> {
         self.settle(true)?;
         self.report_overlaps_at_start(log);
-        if self.interface == Interface::ModelExchange {
-            // They happen in event mode, once more.
-            self.free
-                .iter_mut()
-                .flat_map(FreeMotion::events)
-                .for_each(drop);
-        }
         self.log_events(log);
         self.commit_settled();
         Ok(())

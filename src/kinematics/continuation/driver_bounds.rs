@@ -95,10 +95,10 @@ impl Motion<'_> {
         let motions = &state.motions;
         let [begin, stop] = [path.time(start), path.time(end)];
         let duration = stop - begin;
-        let way = Interval::point(stop) - Interval::point(begin);
         let time = Interval::new(begin, stop);
+        let along = || Jet3::linear(time, Interval::point(stop) - Interval::point(begin));
         let range = if let Some(moving) = moving {
-            let range = moving.motion(self.driver, Jet3::linear(time, way))?;
+            let range = moving.motion(self.driver, along())?;
             if range.first().is_finite() {
                 return Some(0.125 * bend(&range));
             }
@@ -125,7 +125,7 @@ impl Motion<'_> {
                 let is_passed = end - start <= PASSED_AT_ONCE;
                 return Some((to - from).abs()).filter(|jump| is_passed && is_small(jump));
             }
-            let pieces = motions.enclose_joined(self.driver, Jet3::linear(time, way))?;
+            let pieces = motions.enclose_joined(self.driver, along())?;
             Some(0.125 * bend(&pieces))
         })
     }

@@ -78,7 +78,7 @@ fn assert_swings(name: &str, mechanism: &Arc<Mechanism>, truth: impl Fn(f64) -> 
         assert!(largest < mark, "{name} at {tolerance:e}: {largest:e}");
         // Six passages in 4 periods: those of a good coordinate, and some for each.
         let steps = run.statistics().accepted;
-        assert!(steps < 600, "{name} at {tolerance:e}: {steps} steps");
+        assert!(steps < 900, "{name} at {tolerance:e}: {steps} steps");
     }
 }
 
@@ -337,7 +337,7 @@ upright = {{ type = "slot", markers = ["ground.upright", "bar.B"] }}
 
 /// A tappet on a cam.
 fn cam(random: &mut Random) -> Option<Case> {
-    let (base, lift) = (random.between(0.2, 0.4), random.between(0.02, 0.08));
+    let (base, lift) = (random.between(0.4, 0.6), random.between(0.1, 0.15));
     let angle = random.between(-3.1, 3.1);
     Some(Case {
         parts: format!(
@@ -348,7 +348,7 @@ guide = [0, 0, "90*deg"]
 [bodies.cam]
 mass = 2
 inertia = 0.05
-markers = {{ O = [0, 0], C = [0.1, 0] }}
+markers = {{ O = [0, 0], C = [0.3, 0] }}
 estimate = [0, 0, {angle:?}]
 [bodies.tappet]
 mass = 0.5
@@ -462,10 +462,7 @@ right = {{ type = "link", markers = ["carriage.P", "seat.B"], length = {length:?
 impl Case {
     /// The mechanism with one of the sets as its freedoms; all coordinates are measured.
     fn text(&self, set: usize, states: &[[f64; 2]]) -> String {
-        let mut text = format!(
-            "format = 1\nname = \"coordinates\"\n{}[freedoms]\n",
-            self.parts
-        );
+        let mut text = format!("format = 1\nname = \"any\"\n{}[freedoms]\n", self.parts);
         for (k, (coordinate, [start, velocity])) in self.sets[set].iter().zip(states).enumerate() {
             // The estimates say where the good ones start.
             let start = match start.is_nan() {
@@ -548,7 +545,7 @@ fn any_coordinates_give_the_same_motion() {
                 if set == 0
                     || moves
                         .into_iter()
-                        .any(|([_, v], good)| (v / good).abs() < 0.1)
+                        .any(|([_, v], good)| (v / good).abs() < 0.05)
                 {
                     continue;
                 }

@@ -504,7 +504,7 @@ fn impossible_numbers_are_named() {
     }
 }
 
-/// What closes at the start meets there; what lies or sticks at the start began to do so before.
+/// Parts that close at the start meet there; those that lie or stick at the start began to do so before.
 #[test]
 fn an_impact_at_the_start_is_an_event_and_rest_is_none() {
     let stop = "[stops]\nbottom = { of = \"way\", min = 0, restitution = 0.5 }";
