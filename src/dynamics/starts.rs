@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::apart::TOLD;
+use super::event::Event;
 use super::given::Given;
 use super::motion::FreeMotion;
 use super::overlap::Overlap;
@@ -34,6 +35,8 @@ pub struct KeptStart {
     pub pose: Pose,
     /// Overlaps at the start of the file.
     pub overlaps: Vec<Overlap>,
+    /// Impacts there.
+    pub events: Vec<Event>,
 }
 
 impl KeptStart {
@@ -73,6 +76,7 @@ impl KeptStart {
             mechanism: Arc::new(kept),
             pose: solver.pose().clone(),
             overlaps: free.overlaps().collect(),
+            events: free.events().collect(),
         })
     }
 }

@@ -57,15 +57,14 @@ fn a_free_motion_that_takes_too_long_is_discarded_and_leaves_no_trace() {
     let (mut straight, mut tried) = (begin(), begin());
     set(
         &mut tried,
-        [("solver.budget", 30_000.0), ("motor.effort", TOO_LARGE)],
+        [("solver.budget", 3000.0), ("motor.effort", TOO_LARGE)],
     );
     let why = discarded(tried.begin_step(STEP, STEP));
     assert!(
-        why.starts_with("given up in the step from 0.1 s over 0.1 s: t = 0.1")
-            && !why.contains("t = 0.100000000 s"),
+        why.starts_with("given up in the step from 0.1 s over 0.1 s: t = 0.1"),
         "{why}"
     );
-    assert!(why.contains("takes more than 30000 sub-steps"), "{why}");
+    assert!(why.contains("takes more than 3000 sub-steps"), "{why}");
     assert!(why.contains("set `solver.budget` higher"), "{why}");
     let [budget] = get(&mut straight, ["solver.budget"]);
     set(

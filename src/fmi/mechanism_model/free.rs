@@ -172,8 +172,7 @@ impl MechanismModel {
     /// Freedoms have no acceleration there.
     pub(super) fn settle_freedoms(&mut self, log: &Logger) -> Result<(), Failure> {
         self.settle(true)?;
-        self.report_overlaps_at_start(log);
-        self.log_events(log);
+        self.report_start(log);
         self.commit_settled();
         Ok(())
     }

@@ -254,15 +254,26 @@ impl MechanismModel {
         }
     }
 
-    /// Advises of parts that overlap at the start: at that of the file, if the host has set no other one.
-    pub(super) fn report_overlaps_at_start(&mut self, log: &Logger) {
+    /// Advises of parts that overlap at the start, and logs impacts there: those of the file's start, if the
+    /// host has set no other one.
+    pub(super) fn report_start(&mut self, log: &Logger) {
         let (start, own) = (&self.course.committed, &self.file_pose);
-        if start.drivers == own.drivers && start.parameters == own.parameters {
+        let mut inputs = self.mechanism.drivers.iter().zip(&self.course.inputs);
+        let keeps_velocities = inputs.all(|(driver, input)| {
+            let velocity = input.get(Order::Velocity);
+            !driver.is_free() || velocity.to_bits() == driver.start_velocity().to_bits()
+        });
+        if start.drivers == own.drivers && start.parameters == own.parameters && keeps_velocities {
             for overlap in &self.overlaps {
                 log.advise(Advice::Overlap, || overlap.describe(&self.mechanism));
             }
+            for impact in self.impacts.iter().filter(|_| log.wants(Category::Events)) {
+                let message = impact.describe(&self.mechanism);
+                log.write(Status::Ok, Category::Events, &message);
+            }
         }
         self.report_overlaps(log);
+        self.log_events(log);
     }
 
     /// Logs the effort of a step.

@@ -57,7 +57,7 @@ use super::model::{Groups, Model, StateChange};
 use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
-use crate::dynamics::{FreeMotion, FreeState, KeptStart, Overlap};
+use crate::dynamics::{Event, FreeMotion, FreeState, KeptStart, Overlap};
 use crate::kinematics::{
     self, Budget, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
     offer_start,
@@ -87,8 +87,9 @@ pub struct MechanismModel {
     /// Pose of the file's own values, where its motion [begins](KeptStart), and the solver's choices there.
     file_pose: Arc<Pose>,
     file_choices: SolverChoices,
-    /// Overlaps at the start of the file.
+    /// Overlaps and impacts at the start of the file.
     overlaps: Vec<Overlap>,
+    impacts: Vec<Event>,
     course: Course,
     /// Rates and forces at the solver's pose; the values of the drivers' rates have no meaning.
     solution: Solution,
@@ -232,9 +233,9 @@ impl MechanismModel {
         interface: Interface,
         decisions: &Decisions,
     ) -> Result<Self, kinematics::Error> {
-        let (mechanism, overlaps) = match KeptStart::of(&mechanism) {
-            Some(kept) => (kept.mechanism, kept.overlaps),
-            None => (mechanism, Vec::new()),
+        let (mechanism, overlaps, impacts) = match KeptStart::of(&mechanism) {
+            Some(kept) => (kept.mechanism, kept.overlaps, kept.events),
+            None => (mechanism, Vec::new(), Vec::new()),
         };
         let path = Path::new(&mechanism);
         let solver = Solver::assembled(Arc::clone(&mechanism), &path);
@@ -270,6 +271,7 @@ impl MechanismModel {
             has_jumped: false,
             file_pose,
             overlaps,
+            impacts,
             solver,
             mechanism,
         })
