@@ -201,8 +201,8 @@ fn stays_above(mut right: [f64; DEGREE + 1], degree: usize, floor: f64, halvings
         return false;
     }
     let mut left = [0.0; DEGREE + 1];
-    for step in 0..=degree {
-        left[step] = right[0];
+    for (step, left) in left.iter_mut().enumerate().take(degree + 1) {
+        *left = right[0];
         for k in 0..degree - step {
             right[k] = 0.5 * (right[k] + right[k + 1]);
         }

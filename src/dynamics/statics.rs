@@ -265,7 +265,7 @@ impl Statics {
             free.axpy(-side.sign * pushes[side.force], &row, 1.0);
             let size = row.norm_squared();
             if size > 0.0 {
-                bent += &row * row.transpose() * (OF_CONTACTS * stiffness.amax() / size);
+                bent += row * row.transpose() * (OF_CONTACTS * stiffness.amax() / size);
             }
         }
         let eigen = bent.symmetric_eigen();

@@ -391,7 +391,7 @@ fn starts_that_overlap_are_moved_and_told() {
     };
     for interface in [Interface::CoSimulation, Interface::ModelExchange] {
         let heard = Heard::default();
-        let mut instance = heard.instance(wheels(), interface, true);
+        let instance = heard.instance(wheels(), interface, true);
         let starts = names.map(|name| {
             let named = instance.variables().iter().find(|v| v.name == name);
             named.expect("an output").kind.clone()

@@ -127,7 +127,12 @@ hold = {{ coordinate = "distance", markers = ["a.C", "b.C"], start = 0.35 }}
             solution.solve(&mut solver).expect("rates and forces exist");
             [0, 1].map(|driver| solution.force(ForceQuantity::Effort(DriverId(driver))))
         });
-        assert_eq!(efforts[0], efforts[1], "at {}", turn.value);
+        assert_eq!(
+            efforts[0].map(f64::to_bits),
+            efforts[1].map(f64::to_bits),
+            "at {}",
+            turn.value
+        );
     }
 }
 

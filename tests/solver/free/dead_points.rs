@@ -269,7 +269,7 @@ right = {{ type = "rope", markers = ["ground.O2", "seat.B", "ground.P2"], length
 /// A carriage on a closed track: its angle is a good coordinate all around.
 fn track(random: &mut Random) -> Option<Case> {
     let [a, b] = [0.0; 2].map(|_| random.between(0.7, 1.6));
-    let (sin, cos) = random.between(0.0, 6.28).sin_cos();
+    let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
     let angle = f64::atan2(b * cos, -a * sin);
     Some(Case {
         parts: format!(

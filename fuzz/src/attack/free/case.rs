@@ -29,6 +29,9 @@ impl Case {
     }
 }
 
+/// A gap as a function of x, y and phi of all bodies \[m\].
+pub type Gap = Box<dyn Fn(&[f64]) -> f64>;
+
 /// Something that holds at any time of a motion.
 pub enum Check {
     /// A variable stays between two values.
@@ -47,12 +50,12 @@ pub enum Check {
         /// Force while it slides, largest force while it sticks, and force per speed \[SI\].
         law: [f64; 3],
     },
-    /// A gap, a function of x, y and phi of all bodies, is not negative \[m\].
+    /// A gap is not negative.
     Gap {
         /// Name of the contact.
         name: String,
         /// The gap.
-        gap: Box<dyn Fn(&[f64]) -> f64>,
+        gap: Gap,
     },
     /// Kinetic energy and that of gravity do not grow.
     Energy,

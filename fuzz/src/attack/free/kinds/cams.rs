@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 use super::{DEAD_POINTS, is, log_between};
-use crate::attack::free::case::{Case, Check};
+use crate::attack::free::case::{Case, Check, Gap};
 use crate::attack::free::text::Text;
 use crate::mutation::Chance;
 
@@ -149,7 +149,7 @@ pub fn cam_tappet(chance: &mut Chance, mut text: Text) -> Case {
         );
     }
     let points = Arc::new(contour.points());
-    let gap: Box<dyn Fn(&[f64]) -> f64> = match follower {
+    let gap: Gap = match follower {
         "knife" => Box::new(move |q| q[4] - contour.at(FRAC_PI_2 - q[2])),
         "roller" => Box::new(move |q| roller_gap(&points, q[2], [q[3], q[4]]) - roller),
         _ => Box::new(move |q| {
