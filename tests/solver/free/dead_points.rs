@@ -63,10 +63,10 @@ fn omega() -> f64 {
 
 /// Compares a swing with a truth for its angle and rate, at all tolerances.
 fn assert_swings(name: &str, mechanism: &Arc<Mechanism>, truth: impl Fn(f64) -> Vec<f64>) {
-    for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+    for tolerance in [1e-4, 1e-8, 1e-12] {
         let mut run = Run::new(mechanism, tolerance, Fed::default());
         let mut largest = 0.0_f64;
-        for time in (0..=12).map(|step| 0.5 * f64::from(step)) {
+        for time in (0..=8).map(|step| 0.5 * f64::from(step)) {
             run.to(time);
             let ([x, y], [vx, vy]) = place(&truth(time));
             let (q, v) = (&run.solver.pose().q, run.solution.rates.velocity());
@@ -76,16 +76,16 @@ fn assert_swings(name: &str, mechanism: &Arc<Mechanism>, truth: impl Fn(f64) -> 
         // Rounding of a place, 1e-15, grows by the condition next to a dead point and over the run.
         let mark = (MARK * tolerance).max(1e-10);
         assert!(largest < mark, "{name} at {tolerance:e}: {largest:e}");
-        // Six passages in 4 periods: those of a good coordinate, and some for each.
+        // Up to ten passages: the steps of a good coordinate, some 30 a second, and as many again.
         let steps = run.statistics().accepted;
-        assert!(steps < 900, "{name} at {tolerance:e}: {steps} steps");
+        assert!(steps < 600, "{name} at {tolerance:e}: {steps} steps");
     }
 }
 
 /// Heights and ways beside the lowest point, distances from a point on the way and off it.
 #[test]
 fn swings_move_by_elliptic_functions_in_any_coordinate() {
-    for amplitude in [0.2, 0.9, 2.2] {
+    for amplitude in [0.2, 2.2] {
         let ([x, y], _) = place(&[amplitude, 0.0]);
         let (q, r) = (distance([x, y], [0.0, -2.0]), distance([x, y], [0.3, -2.4]));
         for freedom in [
