@@ -56,6 +56,7 @@ PARTS = {
     "the derivatives are not finite": "no step leads on from t = … s: …",
     "the estimated error is … times the tolerance": "likewise",
     "the matrix of the stiff method is singular": "likewise",
+    "events follow each other too fast": "likewise",
     "no input, and only inputs have input derivatives": "cannot be set: it is …",
     "Integer or Enumeration": "`…` is …, not …",
     "the mechanism has none": "no … `…`; …",
