@@ -10,8 +10,18 @@ impl Cause for ElasticStop {
         let parameters = &solver.pose().parameters;
         let value = |id: ParameterId| parameters[id.index()];
         at.bounds = self.limits(parameters);
-        let coordinate = [at.coordinate.value, at.coordinate.first()];
-        let push = self.push(&value, coordinate);
+        let (rounding, rate) = (at.gap_rounding(), at.coordinate.first());
+        let [below, above] = at.gaps();
+        let is_met = |gap: f64, closes: bool| (0.0..=rounding).contains(&gap) && closes;
+        // At a limit that the coordinate is about to pass the damper pushes already.
+        let place = if is_met(below, rate < 0.0) {
+            at.bounds[0] - rounding
+        } else if is_met(above, rate > 0.0) {
+            at.bounds[1] + rounding
+        } else {
+            at.coordinate.value
+        };
+        let push = self.push(&value, [place, rate]);
         at.force = push.map_or(0.0, |(push, sign)| push * sign);
         at.force_rounding = self.stiffness.value(parameters) * at.gap_rounding();
     }

@@ -425,3 +425,25 @@ drag = {{ coordinate = "angle", markers = ["ground.B", "wheel.O"], damping = 0.0
         assert!((value - start - truth).abs() < 1e-7, "{value} {truth}");
     }
 }
+
+/// A body that starts at the limit of an elastic stop with a damper, and moves in: from the first instant on
+/// the damper pushes, as behind the limit.
+#[test]
+fn a_start_at_an_elastic_limit_goes_on() {
+    let start = |place: f64| {
+        slider(
+            0.0,
+            place,
+            -2.0,
+            "[stops]\nend = { of = \"way\", min = 0, stiffness = 26000, damping = 197 }",
+        )
+    };
+    let mut at = run(&start(0.0));
+    played(&mut at, 0.5, 5);
+    // The same stop, met in flight.
+    let mut before = run(&start(0.2));
+    played(&mut before, 0.6, 5);
+    for (value, truth) in at.state().iter().zip(before.state()) {
+        assert_near(*value, truth);
+    }
+}
