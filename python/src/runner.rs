@@ -13,12 +13,6 @@ use biela::mechanism::{DriverId, Jet, Order, show_time};
 use crate::error::Failure;
 use crate::scenario::Scenario;
 
-/// The part of the forces that tells whether contacts pull.
-const CONTACTS: ForceParts = ForceParts {
-    efforts: false,
-    reactions: true,
-};
-
 /// Number of variants that one solver runs in a batch: far more work than making the solver.
 pub(crate) const BATCH: usize = 32;
 
@@ -439,7 +433,9 @@ impl Runner {
         }
         self.solution.solve_rates(&mut self.solver)?;
         // Forces may exist at fewer poses than the values that are asked for.
-        let _ = self.solution.solve_forces(&mut self.solver, CONTACTS);
+        let _ = self
+            .solution
+            .solve_forces(&mut self.solver, ForceParts::REACTIONS);
         Ok(())
     }
 }

@@ -10,12 +10,6 @@ use crate::kinematics::{
 };
 use crate::mechanism::{DriverId, show_time};
 
-/// The part of the forces that tells whether contacts pull.
-const CONTACTS: ForceParts = ForceParts {
-    efforts: false,
-    reactions: true,
-};
-
 /// A mechanism that moves from one time to the next.
 pub(super) struct Motion {
     pub(super) solver: Solver,
@@ -199,7 +193,9 @@ impl Motion {
         }
         if self.watches_contacts {
             self.solution.solve_rates(&mut self.solver)?;
-            let solved = self.solution.solve_forces(&mut self.solver, CONTACTS);
+            let solved = self
+                .solution
+                .solve_forces(&mut self.solver, ForceParts::REACTIONS);
             if solved.is_err() {
                 return Ok(());
             }

@@ -31,10 +31,7 @@ impl MechanismModel {
         if self.course.lifted.is_empty() || !log.wants(Category::Warning) {
             return;
         }
-        let parts = ForceParts {
-            efforts: false,
-            reactions: true,
-        };
+        let parts = ForceParts::REACTIONS;
         // A host that reads forces learns that they do not exist.
         let solved = self.refresh_rates().and_then(|()| self.solve_forces(parts));
         if solved.is_err() {

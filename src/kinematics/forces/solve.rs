@@ -82,6 +82,11 @@ impl ForceParts {
         efforts: true,
         reactions: true,
     };
+    /// What tells whether contacts pull.
+    pub const REACTIONS: Self = Self {
+        efforts: false,
+        reactions: true,
+    };
 }
 
 impl Forces {
