@@ -82,7 +82,7 @@ impl ForceParts {
         efforts: true,
         reactions: true,
     };
-    /// What tells whether contacts pull.
+    /// Reactions alone, which tell whether contacts pull.
     pub const REACTIONS: Self = Self {
         efforts: false,
         reactions: true,
