@@ -93,7 +93,7 @@ fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see fu
 ATTACK_CASES ?= 1000
 ATTACK_SEED ?= 1
 
-attack: ## move generated mechanisms, in jumps and in tiny steps (ATTACK_CASES, ATTACK_SEED; see fuzz/src/attack)
+attack: ## move generated mechanisms, in jumps, in tiny steps and freely (ATTACK_CASES, ATTACK_SEED; see fuzz/src/attack)
 	$(CARGO) run --release --locked --package fuzz --bin attack -- $(ATTACK_CASES) $(ATTACK_SEED)
 
 lint: setup ## check formatting, lints, documentation and licences

@@ -239,14 +239,18 @@ pub fn hoist(chance: &mut Chance, mut text: Text) -> Case {
         text.joint(&format!("g{k}"), "translational", markers, "");
         let freedom = format!("y{k}");
         text.freedom(&freedom, "x", markers, [height, speed]);
-        if is(chance, 0.6) {
-            let least = height - log_between(chance, 0.01, 0.6);
-            let restitution = text.nudged(chance.between(0.0, 0.8));
-            let entry =
-                format!("{{ of = '{freedom}', min = {least:?}, restitution = {restitution:?} }}");
-            text.add("stops", &format!("mat{k}"), &entry);
-            checks.push(Check::stop(&freedom, [least, f64::INFINITY]));
-        }
+        // The rope ends where a weight meets the pulley.
+        let most = top - radius;
+        let least = match is(chance, 0.6) {
+            true => height - log_between(chance, 0.01, 0.6),
+            false => height - 10.0,
+        };
+        let restitution = text.nudged(chance.between(0.0, 0.8));
+        let entry = format!(
+            "{{ of = '{freedom}', min = {least:?}, max = {most:?}, restitution = {restitution:?} }}"
+        );
+        text.add("stops", &format!("mat{k}"), &entry);
+        checks.push(Check::stop(&freedom, [least, most]));
         if is(chance, 0.3) {
             let force = log_between(chance, 0.05, 3.0);
             text.add(
