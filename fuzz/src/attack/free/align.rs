@@ -72,12 +72,9 @@ impl Alignment {
                     .map(|place| &events[side][*place])
                     .collect::<Vec<_>>()
             });
-            let undone = [0, 1].map(|side| match here[side][..] {
-                [first, second, ..] => is_undone(first, second, short),
-                _ => false,
-            });
-            if undone[0] != undone[1] {
-                at[usize::from(undone[1])] += 2;
+            let undone = here.each_ref().map(|events| undone(events, short));
+            if undone[0].min(undone[1]) == 0 && undone != [0, 0] {
+                at = [at[0] + undone[0], at[1] + undone[1]];
                 continue;
             }
             let firsts = [here[0].first(), here[1].first()];
@@ -131,8 +128,15 @@ fn skipped(events: &[&Happening]) -> usize {
     }
 }
 
-/// Returns whether an event undoes the one before it at once.
-fn is_undone(first: &Happening, second: &Happening, short: f64) -> bool {
+/// Returns the number of events from the first one to the one that undoes it at once, slow impacts
+/// between them; zero if it lasts.
+fn undone(events: &[&Happening], short: f64) -> usize {
+    let is_slow = |event: &Happening| event.speed() < 2.0 * SLOW;
+    let later = events.iter().skip(1).position(|event| !is_slow(event));
+    let Some(between) = later else {
+        return 0;
+    };
+    let [first, second] = [events[0], events[1 + between]];
     let is_opposite = matches!(
         [first.kind, second.kind],
         [EventKind::Leaves, EventKind::Rests]
@@ -140,7 +144,10 @@ fn is_undone(first: &Happening, second: &Happening, short: f64) -> bool {
             | [EventKind::Slides, EventKind::Sticks]
             | [EventKind::Sticks, EventKind::Slides]
     );
-    is_opposite && second.time - first.time < short
+    match is_opposite && second.time - first.time < short {
+        true => 2 + between,
+        false => 0,
+    }
 }
 
 #[cfg(test)]
@@ -173,12 +180,13 @@ mod tests {
             impact(0.2, 0.0049),
             event(0.22, EventKind::Rests),
             event(0.3, EventKind::Leaves),
+            impact(0.3, 1e-6),
             event(0.300_001, EventKind::Rests),
             event(0.5, EventKind::Leaves),
         ];
         let alignment = Alignment::new([&one, &other], 1e-4);
         assert_eq!(alignment.odd, None);
-        assert_eq!(alignment.pairs, [[0, 0], [1, 1], [3, 2], [4, 5]]);
+        assert_eq!(alignment.pairs, [[0, 0], [1, 1], [3, 2], [4, 6]]);
     }
 
     #[test]

@@ -90,7 +90,8 @@ pub fn row_of_masses(chance: &mut Chance, mut text: Text) -> Case {
     for k in 0..=count {
         let name = format!("m{k}");
         let size = [0.0, chance.between(0.05, 0.2)][usize::from(k > 0)];
-        let gap = match touches && is(chance, 0.7) {
+        // A row without any play would not move.
+        let gap = match touches && k < count && is(chance, 0.7) {
             true => 0.0,
             false => log_between(chance, 1e-3, 0.4),
         };

@@ -73,6 +73,25 @@ impl Contour {
         points.collect()
     }
 
+    /// Removes the lobe if its flanks are too hollow for a roller, which would touch at two places.
+    fn for_roller(self, radius: f64) -> Self {
+        const PLACES: u32 = 1440;
+        let step = TAU / f64::from(PLACES);
+        let is_hollow = (0..PLACES).any(|k| {
+            let theta = step * f64::from(k);
+            let [before, here, after] = [-1.0, 0.0, 1.0].map(|s| self.at(theta + s * step));
+            let slope = (after - before) / (2.0 * step);
+            let bend = (after - 2.0 * here + before) / (step * step);
+            let turned = here * here + 2.0 * slope * slope - here * bend;
+            // The hollow has to be wider than the roller by half of it.
+            turned * 1.5 * radius < -(here * here + slope * slope).powf(1.5)
+        });
+        match is_hollow {
+            true => Self { lobe: 0.0, ..self },
+            false => self,
+        }
+    }
+
     fn largest(&self) -> f64 {
         let radii = self.points().into_iter().map(|[x, y]| x.hypot(y));
         radii.fold(0.0, f64::max)
@@ -105,6 +124,10 @@ pub fn cam_tappet(chance: &mut Chance, mut text: Text) -> Case {
     let contour = Contour::draw(chance, follower == "flat");
     add_cam(chance, &mut text);
     let roller = chance.between(0.005, 0.03);
+    let contour = match follower {
+        "roller" => contour.for_roller(roller),
+        _ => contour,
+    };
     let above = match follower {
         "roller" => roller,
         _ => 0.0,
@@ -177,7 +200,8 @@ fn roller_gap(points: &[[f64; 2]], turn: f64, [x, y]: [f64; 2]) -> f64 {
 pub fn cam_arm(chance: &mut Chance, mut text: Text) -> Case {
     let contour = Contour::draw(chance, false);
     add_cam(chance, &mut text);
-    let roller = chance.between(0.005, 0.03);
+    let roller = chance.between(0.002, 0.03);
+    let contour = contour.for_roller(roller);
     let pivot = [-chance.between(0.12, 0.3), chance.between(0.0, 0.08)];
     let length = -pivot[0] * chance.between(0.9, 1.1);
     let above = contour.largest() + roller + log_between(chance, 1e-3, 0.03);

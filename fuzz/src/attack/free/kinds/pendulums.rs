@@ -87,10 +87,11 @@ pub fn cradle(chance: &mut Chance, mut text: Text) -> Case {
     let length = chance.between(0.5, 1.0);
     let width = chance.between(0.05, 0.1);
     let mut checks = Vec::new();
-    let mut last = String::new();
+    let (mut place, mut last) = (0.0, String::new());
     for k in 0..count {
         // Rods in touch that hang straight would touch without any force.
-        let pivot = [width * k as f64 * chance.between(1.002, 1.05), 0.0];
+        let pivot = [place, 0.0];
+        place += width * chance.between(1.002, 1.05);
         let foot = format!("O{k}");
         text.ground(&foot, pivot, 0.0);
         let direction = match k {
