@@ -23,6 +23,12 @@ const LEAST: f64 = 300.0;
 const CHAOS: [f64; 2] = [1e-4, 1e-3];
 /// A contact that opens, or friction that slides, for this part of the motion is rounding.
 const SHORT: f64 = 1e-5;
+/// Error of the instant of rest after bounces, as part of the motion: the last ones, of less than rounding,
+/// are foreseen with the acceleration of that moment.
+const REST: f64 = 1e-4;
+/// Rounding of places in parts of their size, with what an instant and a speed make of it: at some hundred
+/// turns it is more than the tolerance.
+const ROUNDING: f64 = 1e-12;
 
 /// Differences allowed between a motion and one with other errors.
 #[derive(Debug)]
@@ -108,7 +114,7 @@ impl<'a> Sensitivity<'a> {
     ///
     /// The first difference, in words.
     pub fn compare(&self, other: &Record, tolerance: f64) -> Result<(), String> {
-        let errors = Errors::of(tolerance);
+        let errors = Errors::of(tolerance, self.base);
         let refusals = [self.base, other].map(|record| record.refusal.as_ref());
         let times = refusals.map(|refusal| refusal.map_or(f64::INFINITY, |refusal| refusal.time));
         let first = times[0].min(times[1]);
@@ -155,7 +161,7 @@ impl<'a> Sensitivity<'a> {
     ///
     /// The first difference, in words.
     pub fn compare_truth(&self, truth: &Truth, tolerance: f64) -> Result<(), String> {
-        let errors = Errors::of(tolerance);
+        let errors = Errors::of(tolerance, self.base);
         let refusal = self.base.refusal.as_ref();
         let until = self.horizon.min(truth.until);
         if let Some(refusal) = refusal.filter(|refusal| refusal.time < until) {
@@ -210,10 +216,11 @@ impl<'a> Sensitivity<'a> {
             let [moved, rates] = self.moved[places[own]];
             let allowed =
                 errors.ratio * moved + errors.least * (self.duration + 1.0 / slower.min(1.0));
-            // The last bounces, of less than rounding, are foreseen as those of one contact alone.
             let allowed = match event.kind {
-                EventKind::Rests => allowed + SHORT * self.duration,
-                _ => allowed,
+                EventKind::Impact { .. } => allowed,
+                EventKind::Rests => allowed + REST * self.duration,
+                // A force has the errors of accelerations.
+                _ => allowed + 10.0 * errors.least * self.duration,
             };
             let off = (event.time - other.time).abs();
             if off > allowed {
@@ -250,10 +257,12 @@ struct Errors {
 }
 
 impl Errors {
-    fn of(tolerance: f64) -> Self {
+    fn of(tolerance: f64, base: &Record) -> Self {
+        let size = base.rows.iter().map(|row| size(&row.places));
+        let rounding = ROUNDING * size.fold(1.0, f64::max);
         Self {
             ratio: ERRORS * tolerance / NUDGE,
-            least: LEAST * tolerance,
+            least: LEAST * tolerance.max(rounding),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::mutation::Chance;
 pub type Draw = fn(&mut Chance, Text) -> Case;
 
 /// Refusals where driven parts meet stops or each other.
-const STOPS: &[&str] = &["stop `"];
+const STOPS: &[&str] = &["stop `", "no freedom moves them"];
 /// Refusals where joints with friction jam.
 const JAMS: &[&str] = &["jams", "neither sticks nor slides", "stop `"];
 /// Refusals of linkages at change points, where a coordinate has no limit.
