@@ -17,7 +17,7 @@ use super::signals::Signals;
 use crate::drawing::animation::{Animation, fill, page_with, player};
 use crate::drawing::svg::escape;
 use crate::drawing::{Scene, Sheet, png};
-use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
+use crate::fmi::{Causality, Document, Kind, Quantity, Variability, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
     DriverId, DriverSource, Mechanism, Motion as Prescribed, Source, Unit, Variable as Of, rounded,
@@ -366,17 +366,7 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
         .iter()
         .filter_map(|variable| parameter(variable, values));
     let mut html = table(&header, rows);
-    let settings = variables.iter().filter_map(|variable| {
-        let Kind::Enumeration { choices, start } = &variable.kind else {
-            return None;
-        };
-        let items: Vec<String> = (1..)
-            .zip(choices.items)
-            .map(|(number, (name, what))| format!("{number} ({name}) {what}"))
-            .collect();
-        let what = format!("{}: {}", variable.description, items.join("; "));
-        Some([variable.name.clone(), start.to_string(), what])
-    });
+    let settings = variables.iter().filter_map(setting);
     let settings: Vec<[String; 3]> = settings.collect();
     if !settings.is_empty() {
         let names: Vec<&str> = settings.iter().map(|row| row[0].as_str()).collect();
@@ -388,6 +378,28 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
         );
     }
     html
+}
+
+/// Returns name, value and meaning of a variable that is a setting of the solver.
+fn setting(variable: &Variable<Quantity>) -> Option<[String; 3]> {
+    let (value, what) = match (&variable.kind, &variable.quantity) {
+        (Kind::Enumeration { choices, start }, _) => {
+            let items: Vec<String> = (1..)
+                .zip(choices.items)
+                .map(|(number, (name, what))| format!("{number} ({name}) {what}"))
+                .collect();
+            let what = format!("{}: {}", variable.description, items.join("; "));
+            (start.to_string(), what)
+        }
+        (
+            Kind::Real {
+                start: Some(start), ..
+            },
+            Quantity::Budget,
+        ) => (start.to_string(), meaning(variable)),
+        _ => return None,
+    };
+    Some([variable.name.clone(), value, what])
 }
 
 /// Returns name, value, unit, limits and meaning of a variable that is a parameter.
@@ -404,20 +416,25 @@ pub(super) fn parameter(variable: &Variable<Quantity>, values: &[f64]) -> Option
         (None, max) => format!("≤ {}", shown(max)),
         (min, max) => format!("{} to {}", shown(min), shown(max)),
     };
-    let mut what = variable.description.clone();
-    if variable.causality == Causality::CalculatedParameter {
-        what.push_str(" (derived from others)");
-    } else if variable.variability == crate::fmi::Variability::Tunable {
-        what.push_str(" (may change between steps)");
-    }
     Some([
         variable.name.clone(),
         // A derived value carries the rounding of its expression.
         shown(Some(rounded(values[parameter.index()], 12))),
         name_of(*unit),
         limits,
-        what,
+        meaning(variable),
     ])
+}
+
+/// Returns the description of a parameter, and when it gets its value if that is not the start.
+fn meaning(variable: &Variable<Quantity>) -> String {
+    let mut what = variable.description.clone();
+    if variable.causality == Causality::CalculatedParameter {
+        what.push_str(" (derived from others)");
+    } else if variable.variability == Variability::Tunable {
+        what.push_str(" (may change between steps)");
+    }
+    what
 }
 
 /// Returns the tables of inputs and outputs, one for what each belongs to: a body, a driver, a
