@@ -10,8 +10,6 @@ use super::triangular::ascend;
 use crate::kinematics::{Rates, Solver};
 use crate::mechanism::{Mechanism, Order, Signal, show_time};
 
-/// Part of rounding beyond a limit that is none: a place is solved to some roundings.
-const AT_LIMIT: f64 = 0.9;
 /// Depth from which an overlap is told, in gaps that are rounding: 1e-10 radians or sizes of the mechanism.
 /// Halved or doubled, a start that is given with ten digits is told, or one that is wrong in the ninth is
 /// not.
@@ -41,12 +39,12 @@ impl Equations {
     ) -> Result<Option<Overlap>, Error> {
         let count = self.freedoms.len();
         let depths = self.depths(solver.mechanism(), TOLD);
-        if depths.is_empty() && self.depths(solver.mechanism(), AT_LIMIT).is_empty() {
+        if depths.is_empty() && self.depths(solver.mechanism(), 1.0).is_empty() {
             return Ok(None);
         }
         let before = self.own_values(solver);
         for _ in 0..MOST_ITERATIONS {
-            if self.depths(solver.mechanism(), AT_LIMIT).is_empty() {
+            if self.depths(solver.mechanism(), 1.0).is_empty() {
                 break;
             }
             let limits = self.limits(solver.mechanism());
@@ -88,7 +86,7 @@ impl Equations {
         }))
     }
 
-    /// Returns the limits of all contacts, with their gaps: zero where they are rounding.
+    /// Returns the limits of all contacts, with their gaps: zero down to where an impact may end a flight.
     fn limits(&self, mechanism: &Mechanism) -> impl Iterator<Item = (Touch, f64)> {
         let passive = self.passive.list.iter().zip(&self.point.passive);
         let contacts = passive
@@ -98,7 +96,7 @@ impl Equations {
             let sides = [Mode::AtMin, Mode::AtMax].into_iter().zip(at.gaps());
             let limited = sides.filter(|(_, gap)| gap.is_finite());
             limited.map(move |(side, gap)| {
-                let is_beyond = gap < -AT_LIMIT * at.gap_rounding();
+                let is_beyond = gap < -at.gap_rounding();
                 let gap = if is_beyond { gap } else { gap.max(0.0) };
                 (Touch { force, side }, gap)
             })

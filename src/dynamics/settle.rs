@@ -126,7 +126,7 @@ impl Equations {
         let Self { passive, point, .. } = self;
         let modes = passive.modes.iter_mut().zip(&passive.list);
         for ((mode, own), at) in modes.zip(&point.passive) {
-            *mode = own.cause.released(at);
+            *mode = own.cause.released(solver, at);
         }
         self.evaluate(solver, given, time, x)
     }

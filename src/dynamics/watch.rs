@@ -30,6 +30,9 @@ pub(super) struct Watch {
     pub(super) is_event: bool,
     /// Steps cut in a row.
     cuts: i32,
+    /// Steps in a row on the way to a zero over which the function is the same to the bit: so short that
+    /// places are the same to rounding. Each makes the next one twice as long.
+    stalls: i32,
     beyond: Option<Beyond>,
     pub(super) stages: Stages,
     pub(super) gaps: Gaps,
@@ -63,6 +66,7 @@ impl Watch {
         Self {
             is_event: false,
             cuts: 0,
+            stalls: 0,
             beyond: None,
             stages: Stages::new(forces.list.len()),
             gaps: Gaps::default(),
@@ -71,7 +75,7 @@ impl Watch {
 
     /// Begins at a point.
     pub(super) fn begin(&mut self) {
-        (self.is_event, self.cuts, self.beyond) = (false, 0, None);
+        (self.is_event, self.cuts, self.stalls, self.beyond) = (false, 0, 0, None);
         self.stages.forget();
     }
 
@@ -114,6 +118,10 @@ impl Watch {
                 continue;
             }
             self.is_event |= before.ends_at(&after);
+            if known.is_some() {
+                let is_stalled = after.value.to_bits() == before.value.to_bits();
+                self.stalls = if is_stalled { self.stalls + 1 } else { 0 };
+            }
             let value = |at: &[Passive]| {
                 let function = forces.function(force, &at[force], side);
                 function.map(|function| function.value)
@@ -128,6 +136,7 @@ impl Watch {
             return Verdict::Lasts;
         };
         let inside = |time: &f64| start < *time && *time < end;
+        let zero = zero * 2.0_f64.powi(self.stalls);
         let cut = [start + zero, start + 0.5 * h].into_iter().find(inside);
         match cut.filter(|_| !is_shortest) {
             Some(time) => {
@@ -174,7 +183,8 @@ impl Watch {
         let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
         let here = forces.function(force, &at[force], side)?;
         let aim = -0.5 * here.slack(&here, scale);
-        let goal = now + (time - now) * (here.value - aim) / (here.value - value);
+        let part = (here.value - aim) / (here.value - value);
+        let goal = now + (time - now) * part * 2.0_f64.powi(self.stalls);
         (now < goal && goal < time).then_some(goal)
     }
 }

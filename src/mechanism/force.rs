@@ -293,27 +293,32 @@ impl ElasticStop {
     }
 
     /// Returns the force along the coordinate: towards the limits, and never away from them.
-    fn force<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, coordinate: [N; 2]) -> N {
-        let zero = N::constant(0.0);
-        let push = self.push(parameter, coordinate);
-        push.filter(|(push, _)| push.real() > 0.0)
-            .map_or(zero, |(push, sign)| push * sign)
-    }
-
-    /// Returns the push of spring and damper on a coordinate beyond a limit, negative where it would
-    /// pull, and the sign of its direction; `None` between the limits.
-    pub fn push<N: Number>(
+    pub fn force<N: Number>(
         &self,
         parameter: &impl Fn(ParameterId) -> N,
         [position, velocity]: [N; 2],
-    ) -> Option<(N, f64)> {
+    ) -> N {
+        let push = self.beyond(parameter, position).map(|(beyond, sign)| {
+            let push = self.push(parameter, [beyond, velocity * sign]);
+            (push, sign)
+        });
+        push.filter(|(push, _)| push.real() > 0.0)
+            .map_or(N::constant(0.0), |(push, sign)| push * sign)
+    }
+
+    /// Returns the push of spring and damper on a coordinate beyond a limit, with the rate at which it comes
+    /// back; negative where it would pull.
+    pub fn push<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        [beyond, back]: [N; 2],
+    ) -> N {
         let zero = N::constant(0.0);
-        let (beyond, sign) = self.beyond(parameter, position)?;
         let mut push = self.stiffness.evaluate(parameter, zero) * beyond;
         if let Some(damping) = &self.damping {
-            push -= damping.evaluate(parameter, zero) * velocity * sign;
+            push -= damping.evaluate(parameter, zero) * back;
         }
-        Some((push, sign))
+        push
     }
 
     /// Returns the energy of its spring.

@@ -21,7 +21,7 @@ pub(super) struct Contact {
 }
 
 impl Cause for Contact {
-    fn read(&self, solver: &Solver, at: &mut Passive) {
+    fn read(&self, solver: &Solver, _: Mode, at: &mut Passive) {
         let parameters = &solver.pose().parameters;
         match self.cause {
             PassiveCause::Stop(stop) => {
@@ -44,7 +44,7 @@ impl Cause for Contact {
         mode != Mode::Free
     }
 
-    fn released(&self, _: &Passive) -> Mode {
+    fn released(&self, _: &Solver, _: &Passive) -> Mode {
         Mode::Free
     }
 

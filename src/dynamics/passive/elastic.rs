@@ -1,4 +1,7 @@
 //! An elastic stop: a spring and a damper beyond its limits, which never pull.
+//!
+//! While its mode lasts its force is that of the mode also where a trial step goes beyond the limit, so that
+//! the motion is smooth up to the instant at which the mode ends.
 
 use super::{Cause, Function, Mode, Passive};
 use crate::dynamics::event::EventKind;
@@ -6,24 +9,22 @@ use crate::kinematics::Solver;
 use crate::mechanism::{ElasticStop, ParameterId};
 
 impl Cause for ElasticStop {
-    fn read(&self, solver: &Solver, at: &mut Passive) {
+    fn read(&self, solver: &Solver, mode: Mode, at: &mut Passive) {
+        let parameters = &solver.pose().parameters;
+        at.bounds = self.limits(parameters);
+        at.force = push(self, solver, mode, at);
+        at.force_rounding = self.stiffness.value(parameters) * at.gap_rounding();
+    }
+
+    fn beyond_law(&self, solver: &Solver, mode: Mode, at: &Passive) -> f64 {
         let parameters = &solver.pose().parameters;
         let value = |id: ParameterId| parameters[id.index()];
-        at.bounds = self.limits(parameters);
-        let (rounding, rate) = (at.gap_rounding(), at.coordinate.first());
-        let [below, above] = at.gaps();
-        let is_met = |gap: f64, closes: bool| (0.0..=rounding).contains(&gap) && closes;
-        // At a limit that the coordinate is about to pass the damper pushes already.
-        let place = if is_met(below, rate < 0.0) {
-            at.bounds[0] - rounding
-        } else if is_met(above, rate > 0.0) {
-            at.bounds[1] + rounding
-        } else {
-            at.coordinate.value
+        let by_law = self.force(&value, [at.coordinate.value, at.coordinate.first()]);
+        let by_mode = match mode {
+            Mode::AtMin | Mode::AtMax => at.force,
+            _ => 0.0,
         };
-        let push = self.push(&value, [place, rate]);
-        at.force = push.map_or(0.0, |(push, sign)| push * sign);
-        at.force_rounding = self.stiffness.value(parameters) * at.gap_rounding();
+        by_mode - by_law
     }
 
     fn holds(&self, _: Mode) -> bool {
@@ -34,7 +35,7 @@ impl Cause for ElasticStop {
         true
     }
 
-    fn released(&self, at: &Passive) -> Mode {
+    fn released(&self, solver: &Solver, at: &Passive) -> Mode {
         let rate = at.coordinate.first();
         let [below, above] = at.gaps().map(|gap| -gap);
         // At a limit it is touched if the coordinate goes beyond.
@@ -50,7 +51,7 @@ impl Cause for ElasticStop {
             return Mode::Free;
         };
         let is_inside = below <= 0.0 && above <= 0.0;
-        match is_inside || touched.sign() * at.force > 0.0 {
+        match is_inside || touched.sign() * push(self, solver, touched, at) > 0.0 {
             true => touched,
             false if touched == Mode::AtMin => Mode::LooseAtMin,
             false => Mode::LooseAtMax,
@@ -83,4 +84,19 @@ impl Cause for ElasticStop {
             }),
         }
     }
+}
+
+/// Returns the force along the coordinate with which spring and damper push from the side of a mode, or
+/// pull.
+fn push(stop: &ElasticStop, solver: &Solver, mode: Mode, at: &Passive) -> f64 {
+    let parameters = &solver.pose().parameters;
+    let value = |id: ParameterId| parameters[id.index()];
+    let sign = mode.sign();
+    let [below, above] = at.gaps();
+    let beyond = match mode {
+        Mode::AtMin | Mode::LooseAtMin => -below,
+        Mode::AtMax | Mode::LooseAtMax => -above,
+        _ => return 0.0,
+    };
+    sign * stop.push(&value, [beyond, sign * at.coordinate.first()])
 }

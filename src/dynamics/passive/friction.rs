@@ -17,7 +17,7 @@ use crate::mechanism::Order;
 pub(super) struct Rubbing(pub(super) usize);
 
 impl Cause for Rubbing {
-    fn read(&self, _: &Solver, _: &mut Passive) {}
+    fn read(&self, _: &Solver, _: Mode, _: &mut Passive) {}
 
     fn friction(&self) -> Option<usize> {
         Some(self.0)
@@ -28,7 +28,7 @@ impl Cause for Rubbing {
     }
 
     /// Leaves friction undecided, [`Mode::Free`], where its coordinate rests.
-    fn released(&self, at: &Passive) -> Mode {
+    fn released(&self, _: &Solver, at: &Passive) -> Mode {
         let rate = at.coordinate.first();
         if rate.abs() <= at.slow(Order::Velocity) {
             Mode::Free

@@ -34,7 +34,7 @@ use friction::Rubbing;
 pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 /// A speed, or an acceleration, of so many roundings may be rest: 1e-8 radians or sizes of the mechanism
 /// per second. The instant of an event is not known much better.
-const SLOW: f64 = 1e6;
+pub(super) const SLOW: f64 = 1e6;
 
 /// The state of a passive force while the motion is smooth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +92,8 @@ pub struct Passive {
     pub bounds: [f64; 2],
     /// Gap, speed and acceleration that are rounding \[m or rad, and those per second\].
     pub roundings: [f64; 3],
-    /// Force of an elastic stop that is rounding: that of its spring in such a gap \[N or N m\].
+    /// Force that is rounding: of an elastic stop that of its spring in such a gap, of what is held that
+    /// which makes such an acceleration \[N or N m\].
     pub force_rounding: f64,
     /// Whether others hold the coordinate already, or drivers alone move it: its own force is zero while
     /// it is held.
@@ -163,7 +164,13 @@ impl Passive {
 /// mode [`Mode::Free`].
 pub(super) trait Cause: Debug + Send + Sync {
     /// Reads the limits of its coordinate at the solver's pose, and the force if its law says it.
-    fn read(&self, solver: &Solver, at: &mut Passive);
+    fn read(&self, solver: &Solver, mode: Mode, at: &mut Passive);
+
+    /// Returns how much more it exerts in a mode than its law says at this place: where a trial step goes
+    /// beyond the end of the mode.
+    fn beyond_law(&self, _: &Solver, _: Mode, _: &Passive) -> f64 {
+        0.0
+    }
 
     /// Returns whether its force is a law of the coordinate, so that it is no load.
     fn has_law(&self) -> bool {
@@ -174,7 +181,7 @@ pub(super) trait Cause: Debug + Send + Sync {
     fn holds(&self, mode: Mode) -> bool;
 
     /// Returns its mode at a point at which nothing holds, before that is chosen.
-    fn released(&self, at: &Passive) -> Mode;
+    fn released(&self, solver: &Solver, at: &Passive) -> Mode;
 
     /// Returns the sides on which a contact is touched.
     fn touched(&self, _: &Passive) -> [Option<Mode>; 2] {
@@ -365,7 +372,7 @@ impl PassiveForces {
     pub(super) fn begin(
         &mut self,
         solver: &Solver,
-        motion: &EquationsOfMotion,
+        motion: &mut EquationsOfMotion,
         point: &mut [Passive],
     ) {
         self.friction.set_parameters(&solver.pose().parameters);
@@ -381,12 +388,17 @@ impl PassiveForces {
             let least = ROUNDINGS * if is_angle { 1.0 } else { solver.size() };
             let own = solver.coordinate_roundings(relation, motion.coasting());
             to.roundings = own.map(|rounding| rounding.max(least));
-            to.force = 0.0;
+            (to.force, to.force_rounding) = (0.0, 0.0);
             to.is_dependent = false;
-            passive.cause.read(solver, to);
+            let mode = self.modes[k];
+            passive.cause.read(solver, mode, to);
+            let more = passive.cause.beyond_law(solver, mode, to);
+            if more != 0.0 {
+                let partials = self.rows.row(k).into_iter().copied();
+                motion.exert(partials, more, to.coordinate.first());
+            }
             if let Some(place) = passive.cause.friction() {
-                let sign = self.modes[k].sign();
-                self.friction.set_motion(place, to.coordinate.first(), sign);
+                self.friction.set_motion(place, to.coordinate.first(), mode.sign());
             }
         }
     }
@@ -414,6 +426,9 @@ impl PassiveForces {
             for j in 0..=i {
                 self.factor[(i, j)] = self.columns.column(i).dot(&self.columns.column(j));
             }
+        }
+        for (column, &k) in self.holding.iter().enumerate() {
+            at[k].force_rounding = at[k].roundings[2] / self.factor[(column, column)];
         }
         factorise(&mut self.factor, count);
         for (column, &k) in self.holding.iter().enumerate() {
