@@ -80,7 +80,7 @@ impl Equations {
             self.evaluate(solver, given, time, x)?;
             if self.point.energy > energy {
                 // Contacts of different restitution may gain energy from each other.
-                let closing = hits.iter().filter(|hit| hit.speed > 0.0);
+                let closing = hits.iter().filter(|hit| hit.closes);
                 let least = closing.map(|hit| hit.restitution).fold(1.0, f64::min);
                 for hit in &mut hits {
                     hit.restitution = hit.restitution.min(least);
@@ -93,7 +93,7 @@ impl Equations {
             x[2 * self.freedoms.len()] += self.point.energy - energy;
             let struck = hits.iter().zip(&impulses);
             let struck =
-                struck.filter(|(hit, impulse)| **impulse > 0.0 && hit.speed > 0.0 && !hit.rests);
+                struck.filter(|(hit, impulse)| **impulse > 0.0 && hit.closes && !hit.rests);
             events.extend(struck.map(|(hit, _)| Event {
                 time,
                 force: self.passive.list[hit.touch.force].index,

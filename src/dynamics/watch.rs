@@ -23,6 +23,9 @@ const MOST_CUTS: i32 = 80;
 /// Length of a step within which nothing is told apart, in roundings of the time: far below any flight.
 const INSTANT: f64 = 64.0;
 
+/// Length of the step after one over which nothing has changed, in lengths of that.
+const LONGER: f64 = 2.0;
+
 /// The search along a motion.
 #[derive(Debug)]
 pub(super) struct Watch {
@@ -30,9 +33,9 @@ pub(super) struct Watch {
     pub(super) is_event: bool,
     /// Steps cut in a row.
     cuts: i32,
-    /// Steps in a row on the way to a zero over which the function is the same to the bit: so short that
-    /// places are the same to rounding. Each makes the next one twice as long.
-    stalls: i32,
+    /// Length of the last step on the way to a zero if the function was the same to the bit at both ends
+    /// \[s\]: places have not changed in such a step, and shorter ones tell nothing.
+    stall: f64,
     beyond: Option<Beyond>,
     pub(super) stages: Stages,
     pub(super) gaps: Gaps,
@@ -66,7 +69,7 @@ impl Watch {
         Self {
             is_event: false,
             cuts: 0,
-            stalls: 0,
+            stall: 0.0,
             beyond: None,
             stages: Stages::new(forces.list.len()),
             gaps: Gaps::default(),
@@ -75,7 +78,7 @@ impl Watch {
 
     /// Begins at a point.
     pub(super) fn begin(&mut self) {
-        (self.is_event, self.cuts, self.stalls, self.beyond) = (false, 0, 0, None);
+        (self.is_event, self.cuts, self.stall, self.beyond) = (false, 0, 0.0, None);
         self.stages.forget();
     }
 
@@ -120,7 +123,7 @@ impl Watch {
             self.is_event |= before.ends_at(&after);
             if known.is_some() {
                 let is_stalled = after.value.to_bits() == before.value.to_bits();
-                self.stalls = if is_stalled { self.stalls + 1 } else { 0 };
+                self.stall = if is_stalled { h } else { 0.0 };
             }
             let value = |at: &[Passive]| {
                 let function = forces.function(force, &at[force], side);
@@ -136,7 +139,7 @@ impl Watch {
             return Verdict::Lasts;
         };
         let inside = |time: &f64| start < *time && *time < end;
-        let zero = zero * 2.0_f64.powi(self.stalls);
+        let zero = zero.max(LONGER * self.stall);
         let cut = [start + zero, start + 0.5 * h].into_iter().find(inside);
         match cut.filter(|_| !is_shortest) {
             Some(time) => {
@@ -153,7 +156,8 @@ impl Watch {
 
     /// Returns whether a step may not be cut any more.
     pub(super) fn is_shortest(&self, [start, end]: [f64; 2]) -> bool {
-        end - start <= resolution([start, end]) || self.cuts >= MOST_CUTS
+        let h = end - start;
+        h <= resolution([start, end]) || h <= 1.5 * LONGER * self.stall || self.cuts >= MOST_CUTS
     }
 
     /// Counts a step that is cut for a gap.
@@ -184,7 +188,7 @@ impl Watch {
         let here = forces.function(force, &at[force], side)?;
         let aim = -0.5 * here.slack(&here, scale);
         let part = (here.value - aim) / (here.value - value);
-        let goal = now + (time - now) * part * 2.0_f64.powi(self.stalls);
+        let goal = now + ((time - now) * part).max(LONGER * self.stall);
         (now < goal && goal < time).then_some(goal)
     }
 }

@@ -41,7 +41,7 @@ impl Cause for ElasticStop {
         // At a limit it is touched if the coordinate goes beyond.
         let is_beyond = |beyond: f64, rate: f64| {
             let rounding = at.gap_rounding();
-            beyond > rounding || beyond.abs() <= rounding && rate > 0.0
+            beyond > rounding || beyond.abs() <= rounding && rate > at.speed_rounding()
         };
         let touched = if is_beyond(below, -rate) {
             Mode::AtMin

@@ -95,8 +95,8 @@ pub struct Passive {
     /// Force that is rounding: of an elastic stop that of its spring in such a gap, of what is held that
     /// which makes such an acceleration \[N or N m\].
     pub force_rounding: f64,
-    /// Whether others hold the coordinate already, or drivers alone move it: its own force is zero while
-    /// it is held.
+    /// Whether others hold the coordinate already, or drivers alone move it: where its own force would hold
+    /// it, that is zero.
     pub is_dependent: bool,
 }
 
@@ -398,12 +398,13 @@ impl PassiveForces {
                 motion.exert(partials, more, to.coordinate.first());
             }
             if let Some(place) = passive.cause.friction() {
-                self.friction.set_motion(place, to.coordinate.first(), mode.sign());
+                self.friction
+                    .set_motion(place, to.coordinate.first(), mode.sign());
             }
         }
     }
 
-    /// Prepares the forces that hold, for L of J = L Lᵀ.
+    /// Prepares the forces that hold, for L of J = L Lᵀ, and finds what slides though others hold it.
     pub(super) fn prepare(
         &mut self,
         freedoms: &[DriverId],
@@ -434,6 +435,34 @@ impl PassiveForces {
         for (column, &k) in self.holding.iter().enumerate() {
             at[k].is_dependent = self.factor[(column, column)].is_infinite();
         }
+        for place in 0..self.rubbing.len() {
+            let (k, _) = self.rubbing[place];
+            if !self.is_held(k) {
+                at[k].is_dependent = self.is_held_by_others(k, freedoms, lower);
+            }
+        }
+    }
+
+    /// Returns whether a coordinate moves only as those that are held, which rest.
+    fn is_held_by_others(&mut self, k: usize, freedoms: &[DriverId], lower: &DMatrix<f64>) -> bool {
+        /// Part of a row that is rounding, beside bodies of very different masses.
+        const ROUNDING: f64 = 1e-6;
+        let count = self.holding.len();
+        let (columns, mut own) = self.columns.columns_range_pair_mut(..count, count);
+        write_column((&self.rows, k), freedoms, lower, own.as_mut_slice());
+        let parts = &mut self.forces[..count];
+        for (part, column) in parts.iter_mut().zip(columns.column_iter()) {
+            *part = column.dot(&own);
+        }
+        descend(&self.factor, parts);
+        ascend(&self.factor, parts);
+        let row = self.rows.row(k);
+        let largest = row.amax();
+        (0..row.len()).all(|driver| {
+            let held = self.holding.iter().zip(&*parts);
+            let of_held = held.map(|(&k, part)| part * self.rows[(k, driver)]);
+            (row[driver] - of_held.sum::<f64>()).abs() <= ROUNDING * largest
+        })
     }
 
     /// Has the friction that slides act with these sizes, in its order.

@@ -447,3 +447,189 @@ fn a_start_at_an_elastic_limit_goes_on() {
         assert_near(*value, truth);
     }
 }
+
+/// Wheels that touch hundreds of radians from zero part at the instant at which those near zero do: there the
+/// force between them is noise of places far coarser than the time.
+#[test]
+fn wheels_far_from_zero_part() {
+    let text = |start: f64| {
+        format!(
+            r#"
+format = 1
+name = "wheels"
+[ground.markers]
+A = [0, 0]
+B = [1, 0]
+[bodies.motor]
+mass = 1
+inertia = 0.0193
+markers = {{ O = [0, 0] }}
+[bodies.wheel]
+mass = 1
+inertia = 0.371
+markers = {{ O = [0, 0] }}
+estimate = [1, 0, 0]
+[joints]
+a = {{ type = "revolute", markers = ["ground.A", "motor.O"] }}
+b = {{ type = "revolute", markers = ["ground.B", "wheel.O"] }}
+mesh = {{ type = "gear", markers = ["motor.O", "wheel.O"], radii = [0.5, 0.5], backlash = 0.1, restitution = 0 }}
+[freedoms]
+m = {{ coordinate = "angle", markers = ["ground.A", "motor.O"], start = {start} }}
+w = {{ coordinate = "angle", markers = ["ground.B", "wheel.O"], start = {} }}
+[forces]
+spring = {{ coordinate = "angle", markers = ["ground.A", "motor.O"], stiffness = 90, free = {} }}
+"#,
+            -start,
+            start - 0.5
+        )
+    };
+    let parted = |start: f64| {
+        let mut run = run(&text(start));
+        let events = played(&mut run, 0.3, 3);
+        let left = events
+            .iter()
+            .filter(|event| event.kind == EventKind::Leaves);
+        let times: Vec<f64> = left.map(|event| event.time).collect();
+        (times, run.state().to_vec())
+    };
+    let (near, _) = parted(0.0);
+    assert!(!near.is_empty());
+    for start in [-360.585_065_314_829_25, 306.970_538_684_66] {
+        let (far, _) = parted(start);
+        assert_eq!(far.len(), near.len());
+        for (far, near) in far.iter().zip(&near) {
+            // Roundings of 360 rad over those of the stroke, at some rad/s.
+            assert!((far - near).abs() < 1e-9, "{far} {near}");
+        }
+    }
+}
+
+/// A ball on a rope comes to rest at the same instant whatever the rows and the tolerance.
+#[test]
+fn bounces_on_a_rope_come_to_an_end() {
+    let text = r#"
+format = 1
+name = "ball"
+[ground.markers]
+G = [0, 0, "90*deg"]
+A = [-0.2075617396621524, -0.07338213232555435]
+[bodies.ball]
+mass = 1.7
+markers = { B = [0, 0], S = [0, 0, "90*deg"] }
+estimate = [0, -0.23, 0]
+[joints]
+guide = { type = "translational", markers = ["ground.G", "ball.S"] }
+rope = { type = "rope", markers = ["ground.A", "ball.B"], length = 0.26028938293399645, unilateral = true, restitution = 0.5176637713091388 }
+[freedoms]
+y = { coordinate = "x", markers = ["ground.G", "ball.S"], start = -0.23044481757122787, velocity = 1.0530464976525389 }
+"#;
+    let rest = |tolerance: f64, rows: u32| {
+        let mut run = Run::new(&parse(text), tolerance, Fed::default());
+        let events = played(&mut run, 1.0, rows);
+        let rests = events.iter().filter(|event| event.kind == EventKind::Rests);
+        let rests: Vec<f64> = rests.map(|event| event.time).collect();
+        assert!(matches!(rests[..], [_]) && events.len() < 40, "{events:?}");
+        rests[0]
+    };
+    let truth = rest(1e-12, 1);
+    for rows in ROWS {
+        for tolerance in [1e-8, 1e-10] {
+            let off = (rest(tolerance, rows) - truth).abs();
+            // The bounces, shorter by a half each, magnify the errors of the first two flights.
+            assert!(off < 1e3 * tolerance, "{rows} {tolerance} {off}");
+        }
+    }
+}
+
+/// Masses between elastic stops of which one is damped: the force of the damper ends and begins steeply.
+#[test]
+fn masses_on_damped_stops_go_on() {
+    let text = r#"
+format = 1
+name = "row"
+[ground.markers]
+G = [0, 0, -0.9871818225982525]
+[bodies]
+m0 = { markers = { O = [0, 0] }, estimate = [0.143401624468173, -0.21716109719545512, -0.9871818225982525], mass = 1.069433409825704 }
+m1 = { markers = { O = [0, 0] }, estimate = [0.21365639374580345, -0.3235518220992017, -0.9871818225982525], mass = 4.7292630406192115 }
+[joints]
+g0 = { type = "translational", markers = ["ground.G", "m0.O"] }
+g1 = { type = "translational", markers = ["ground.G", "m1.O"] }
+[freedoms]
+x0 = { coordinate = "x", markers = ["ground.G", "m0.O"], start = 0.2602363695474651 }
+x1 = { coordinate = "x", markers = ["ground.G", "m1.O"], start = 0.3877303652954915, velocity = -1.8918725620345278 }
+[stops]
+hit0 = { of = "x0", min = 0.1473850217577611, stiffness = 89744.78019807466 }
+hit1 = { coordinate = "x", markers = ["m0.O", "m1.O"], min = 0.0782127612656669, stiffness = 2441213.9291782407, damping = 6905.547694680709 }
+wall = { of = "x1", max = 0.6075260025579614, stiffness = 104849.78349381515 }
+[friction]
+rub0 = { of = "x0", force = 0.6995856208213878 }
+rub1 = { of = "x1", force = 9.299503798544512 }
+"#;
+    let ends = ROWS.map(|rows| {
+        let mut run = run(text);
+        played(&mut run, 1.2, rows);
+        run.state().to_vec()
+    });
+    for end in &ends {
+        for (value, other) in end.iter().zip(&ends[0]) {
+            // Some dozen impacts magnify the tolerance.
+            assert!((value - other).abs() < 1e-5, "{ends:?}");
+        }
+    }
+}
+
+/// Two bodies that touch at an elastic stop and fall together do not strike.
+#[test]
+fn bodies_that_fall_together_do_not_strike() {
+    let text = r#"
+format = 1
+name = "pair"
+[ground.markers]
+G = [0, 0, -0.8436598086516264]
+[bodies]
+a = { mass = 1.3431295374081558, markers = { O = [0, 0] }, estimate = [0.12844320427615086, -0.14435487701980473, -0.8436598086516264] }
+b = { mass = 1.9755808826862138, markers = { O = [0, 0] }, estimate = [0.24046100958005492, -0.2702495601974961, -0.8436598086516264] }
+[joints]
+ga = { type = "translational", markers = ["ground.G", "a.O"] }
+gb = { type = "translational", markers = ["ground.G", "b.O"] }
+[freedoms]
+fa = { coordinate = "x", markers = ["ground.G", "a.O"], start = 0.19322522414045212 }
+fb = { coordinate = "x", markers = ["ground.G", "b.O"], start = 0.3617406832458845 }
+[stops]
+pair = { coordinate = "x", markers = ["a.O", "b.O"], min = 0.16851545910543236, stiffness = 4500, damping = 77 }
+"#;
+    for rows in ROWS {
+        let events = played(&mut run(text), 1.0, rows);
+        assert!(events.is_empty(), "{events:?}");
+    }
+}
+
+/// A block lies at a stop, pressed by a force that falls. While the stop holds it friction exerts what it does
+/// in sliding; the block is friction's to hold from the instant at which the force is as large as that.
+#[test]
+fn friction_takes_over_from_a_stop_at_one_instant() {
+    let (sliding, sticking) = (0.7, 0.75);
+    let text = slider(
+        0.0,
+        0.0,
+        0.5,
+        &format!(
+            "[stops]\nend = {{ of = \"way\", max = 0.1, restitution = 0.1 }}\n\
+             [friction]\nrub = {{ of = \"way\", force = {sliding}, static = {sticking} }}\n\
+             [forces]\npush = {{ coordinate = \"x\", markers = [\"ground.O\", \"slider.P\"], \
+             value = \"4*cos(t)\" }}"
+        ),
+    );
+    let truth = f64::acos(sliding / 4.0);
+    for rows in ROWS {
+        let mut run = run(&text);
+        let events = played(&mut run, 2.0, rows);
+        let left = events.iter().find(|event| event.kind == EventKind::Leaves);
+        let sticks = events.iter().rfind(|event| event.kind == EventKind::Sticks);
+        for event in [left, sticks] {
+            let time = event.map(|event| event.time).unwrap_or_default();
+            assert!((time - truth).abs() < 1e-9, "{rows} {events:?}");
+        }
+    }
+}

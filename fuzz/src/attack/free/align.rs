@@ -13,6 +13,10 @@ pub struct Happening {
     pub kind: EventKind,
 }
 
+/// Least number of events of a row of bounces, one after the other.
+const BOUNCES: usize = 8;
+/// Longest time between two of them, in short ones.
+const PAUSE: f64 = 10.0;
 /// Impacts below this speed may differ \[m/s or rad/s\]: bounces of a micrometre.
 pub const SLOW: f64 = 5e-3;
 
@@ -62,6 +66,32 @@ impl Alignment {
         alignment
     }
 
+    /// Passes over the rest of a row of bounces, and returns whether there is one.
+    fn pass_row(
+        &self,
+        events: [&[Happening]; 2],
+        places: [&[usize]; 2],
+        at: &mut [usize; 2],
+        short: f64,
+    ) -> bool {
+        let ends = [0, 1].map(|side| {
+            let place = *places[side].get(at[side])?;
+            let [start, end] = row_of_bounces(events[side], place, short);
+            (start < end).then_some(end)
+        });
+        let Some(end) = ends.into_iter().flatten().max_by(f64::total_cmp) else {
+            return false;
+        };
+        for side in [0, 1] {
+            let rest = &places[side][at[side]..];
+            at[side] += rest
+                .iter()
+                .take_while(|k| events[side][**k].time <= end + PAUSE * short)
+                .count();
+        }
+        true
+    }
+
     /// Aligns the events at some places.
     fn add(&mut self, events: [&[Happening]; 2], places: [&[usize]; 2], short: f64) {
         let mut at = [0, 0];
@@ -80,7 +110,14 @@ impl Alignment {
             let firsts = [here[0].first(), here[1].first()];
             let is_same = match firsts {
                 [None, None] => return,
-                [Some(one), Some(other)] => is_same(one, other),
+                [Some(one), Some(other)] => {
+                    let leaves_row = |side: usize| {
+                        let place = places[side][at[side]];
+                        let [start, end] = row_of_bounces(events[side], place, short);
+                        start < end && here[1 - side][0].time > end + PAUSE * short
+                    };
+                    is_same(one, other) && !leaves_row(0) && !leaves_row(1)
+                }
                 _ => false,
             };
             if is_same {
@@ -90,6 +127,7 @@ impl Alignment {
             }
             let skipped = here.each_ref().map(|events| skipped(events));
             match skipped {
+                [0, 0] if self.pass_row(events, places, &mut at, short) => {}
                 [0, 0] => {
                     let mut odd: Vec<_> = firsts.into_iter().flatten().collect();
                     odd.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -109,6 +147,22 @@ impl Alignment {
                 },
             }
         }
+    }
+}
+
+/// Returns the time from the start to the end of the row of bounces to which an event belongs; zero if it
+/// belongs to none. What bounces there in turn until it rests magnifies errors at each bounce, and has no
+/// other effect.
+pub fn row_of_bounces(events: &[Happening], place: usize, short: f64) -> [f64; 2] {
+    let follows = |pair: &[Happening]| pair[1].time - pair[0].time < PAUSE * short;
+    let ends = events[place..].windows(2).take_while(|pair| follows(pair));
+    let starts = events[..=place].windows(2).rev();
+    let starts = starts.take_while(|pair| follows(pair));
+    let [before, after] = [starts.count(), ends.count()];
+    let time = events[place].time;
+    match before + after {
+        BOUNCES.. => [events[place - before].time, events[place + after].time],
+        _ => [time, time],
     }
 }
 

@@ -8,7 +8,7 @@
 
 use biela::dynamics::EventKind;
 
-use super::align::{Alignment, Happening, SLOW};
+use super::align::{Alignment, Happening, SLOW, row_of_bounces};
 use super::case::Truth;
 use super::run::{Record, Row};
 use super::text::NUDGE;
@@ -222,6 +222,8 @@ impl<'a> Sensitivity<'a> {
                 // A force has the errors of accelerations.
                 _ => allowed + 10.0 * errors.least * self.duration,
             };
+            let row = row_of_bounces(&self.base.events, places[own], SHORT * self.duration);
+            let allowed = allowed + row[1] - row[0];
             let off = (event.time - other.time).abs();
             if off > allowed {
                 let events = [event, other].map(Happening::told);

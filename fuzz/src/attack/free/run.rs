@@ -11,8 +11,8 @@ use biela::mechanism::{DriverId, Jet, Mechanism, Source};
 use super::align::Happening;
 use super::case::{Case, Check};
 
-/// Evaluations of a motion beyond which it counts as hanging: a hundred times those of most.
-pub const MOST_EVALUATIONS: u32 = 300_000;
+/// Evaluations of a motion beyond which it counts as hanging: some hundred times those of most.
+pub const MOST_EVALUATIONS: u32 = 1_000_000;
 /// Largest distance beyond a stop or into a contact \[m or rad\]: far more than rounding, far less
 /// than a motion goes in a step.
 const BEYOND: f64 = 1e-9;

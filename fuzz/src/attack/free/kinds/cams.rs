@@ -201,7 +201,8 @@ pub fn cam_arm(chance: &mut Chance, mut text: Text) -> Case {
     let contour = Contour::draw(chance, false);
     add_cam(chance, &mut text);
     let roller = chance.between(0.002, 0.03);
-    let contour = contour.for_roller(roller);
+    // Far from the cam two places are as near as each other where a flank is as hollow as that.
+    let contour = contour.for_roller(roller + 0.05);
     let pivot = [-chance.between(0.12, 0.3), chance.between(0.0, 0.08)];
     let length = -pivot[0] * chance.between(0.9, 1.1);
     let above = contour.largest() + roller + log_between(chance, 1e-3, 0.03);
