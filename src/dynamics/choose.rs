@@ -68,7 +68,10 @@ impl Equations {
         Ok(())
     }
 
-    /// Tries all modes of what was released, those that hold first, and returns whether some agree.
+    /// Tries all modes of what was released, and returns whether some agree. The order is that of the file,
+    /// the first force changing fastest, closed before open and sticking before sliding: where several
+    /// combinations agree, as with friction that jams, the one in which more is held is the motion's, since
+    /// nothing makes what rests begin to move.
     fn try_all(
         &mut self,
         solver: &mut Solver,

@@ -10,7 +10,7 @@ use biela::dynamics::EventKind;
 
 use super::align::{Alignment, Happening, SLOW, row_of_bounces};
 use super::case::Truth;
-use super::run::{Record, Row};
+use super::run::{AT_REST, Record, Row};
 use super::text::NUDGE;
 use crate::attack::distance;
 
@@ -204,7 +204,8 @@ impl<'a> Sensitivity<'a> {
                 .collect();
             alignment = Alignment::new([&own, others], SHORT * self.duration);
         }
-        if let Some((_, odd)) = alignment.odd.filter(|(time, _)| *time < until) {
+        let odd = alignment.odd.filter(|(time, _)| *time < until);
+        if let Some((_, odd)) = odd.filter(|(time, _)| !self.rests_at(*time)) {
             return Err(format!("other events: {odd}"));
         }
         for [own, there] in alignment.pairs {
@@ -231,6 +232,9 @@ impl<'a> Sensitivity<'a> {
                     "{events:?} are {off:.1e} s apart, allowed {allowed:.1e}"
                 ));
             }
+            if row[0] < row[1] {
+                continue;
+            }
             let allowed = errors.of_rate(rates, 1.0 + slower);
             let off = event.speed() - other.speed();
             if off.abs() > allowed {
@@ -241,6 +245,15 @@ impl<'a> Sensitivity<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Returns whether all rests around a time: what comes to rest ever more slowly has no instant of rest.
+    fn rests_at(&self, time: f64) -> bool {
+        let rows = &self.base.rows;
+        let after = rows.partition_point(|row| row.time < time).max(1);
+        let around = rows.iter().skip(after - 1).take(2);
+        let mut rates = around.flat_map(|row| &row.rates);
+        rates.all(|rate| rate.abs() <= AT_REST)
     }
 
     /// Returns the row at the time of another.

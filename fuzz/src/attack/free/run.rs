@@ -19,7 +19,7 @@ const BEYOND: f64 = 1e-9;
 /// Largest residual of the joints, in the mechanism's size.
 const OPEN: f64 = 1e-10;
 /// Speed up to which friction may stick \[m/s or rad/s\].
-const AT_REST: f64 = 1e-7;
+pub const AT_REST: f64 = 1e-7;
 /// Largest error of the force of friction, as part of its size and more.
 const FORCE: f64 = 1e-6;
 

@@ -231,7 +231,7 @@ pub fn slider_crank(chance: &mut Chance, mut text: Text) -> Case {
         text.add("stops", "bump", &entry);
         checks.push(Check::stop("stroke", [f64::NEG_INFINITY, most]));
     }
-    // How two frictions share what holds one coordinate at rest is not determined.
+    // Friction shares what holds one coordinate at rest with other friction in any way.
     if is(chance, 0.4) && !rubs_in_guide {
         let force = log_between(chance, 0.1, 20.0);
         text.add(

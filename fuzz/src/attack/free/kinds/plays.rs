@@ -63,7 +63,8 @@ fn load_wheel(chance: &mut Chance, text: &mut Text, checks: &mut Vec<Check>, k: 
 /// first wheel is free, or turns at a given speed.
 pub fn backlash(chance: &mut Chance, mut text: Text) -> Case {
     let count = 2 + chance.below(3);
-    let one = [0.0, chance.between(0.0, 0.9)][chance.below(2)];
+    // Light wheels between heavy ones with more restitution bounce ten thousands of times.
+    let one = [0.0, chance.between(0.0, 0.7)][chance.below(2)];
     let mut start = match chance.below(3) {
         0 => 0.0,
         1 => chance.between(-TAU, TAU),
