@@ -101,7 +101,7 @@ impl Attempt {
             }
             None => {
                 follower.runner.start(&parameters)?;
-                follower.runner.solver.pose().clone()
+                follower.runner.motion.solver.pose().clone()
             }
         };
         follower.runner.return_to(&base);
@@ -163,7 +163,7 @@ impl Trial {
         let changed = follower.runner.change(0, &parameters);
         changed.map_err(|_| Refused)?;
         follower.check_turn()?;
-        follower.runner.solver.save(first);
+        follower.runner.motion.solver.save(first);
         leaders.clear();
         curvatures.clear();
         for target in &fit.targets {
@@ -188,7 +188,7 @@ impl Trial {
                     let index = target.index(column, pose);
                     residuals[index] = target.residual(column, pose, value);
                 }
-                follower.runner.solver.save(&mut poses[row]);
+                follower.runner.motion.solver.save(&mut poses[row]);
             }
             if let Some(free) = &target.free_driver {
                 let start = target.unknowns.start - count;

@@ -2,10 +2,9 @@
 
 use biela::drawing::ForcePlace;
 use biela::drawing::animation::{Animation, Clock, Moment, page};
+use biela::dynamics::Motion;
 use biela::kinematics::Output;
 use biela::mechanism::Mechanism;
-
-use crate::runner::Runner;
 
 /// Time between two poses of a motion without times \[s\].
 const FRAME: f64 = 0.02;
@@ -43,13 +42,13 @@ impl Film {
     }
 
     /// Adds a row, if it is one to show.
-    pub(crate) fn add(&mut self, row: usize, runner: &Runner) {
+    pub(crate) fn add(&mut self, row: usize, motion: &Motion) {
         if !row.is_multiple_of(self.stride) {
             return;
         }
-        let Runner {
+        let Motion {
             solver, solution, ..
-        } = runner;
+        } = motion;
         let moment = Moment::record(solver, solution, &self.columns, &self.forces);
         self.moments.push(moment);
         self.times.push(solver.pose().time);

@@ -96,8 +96,7 @@ impl Follower {
                 freedom.name
             )));
         }
-        let mut runner = Runner::new(&fit.scenario, &columns)?;
-        runner.gives_up = true;
+        let runner = Runner::new(&fit.scenario, &columns)?;
         Ok(Self {
             fit: Arc::clone(fit),
             runner,
@@ -179,7 +178,7 @@ impl Follower {
     fn scan(&mut self, target: &Target, free: &FreeDriver) -> Result<Curve, Refused> {
         let row = target.rows.start;
         self.go(row)?;
-        let middle = self.runner.solver.pose().clone();
+        let middle = self.runner.motion.solver.pose().clone();
         let start = middle.drivers[free.driver.index()];
         let [low, high] = free.bounds;
         let mut curve = Curve::new(start, self.values(target));
@@ -230,7 +229,7 @@ impl Follower {
         let Some(driver) = self.fit.turns else {
             return Ok(());
         };
-        let pose = self.runner.solver.pose().clone();
+        let pose = self.runner.motion.solver.pose().clone();
         let turns = self.runner.turns(driver);
         self.runner.return_to(&pose);
         if turns { Ok(()) } else { Err(Refused) }
@@ -285,7 +284,7 @@ impl Follower {
             } else {
                 0.0
             };
-            let before = self.runner.solver.pose().clone();
+            let before = self.runner.motion.solver.pose().clone();
             self.set_value(row, free.driver, next);
             if self.go(row).is_ok()
                 && let Ok((slope_there, steepness_there)) = self.slope(target, free, pose)
@@ -341,7 +340,7 @@ impl Follower {
         let reached = self.runner.advance_to(0);
         self.forget_timing();
         match reached {
-            Ok(()) => self.runner.solver.pose().clone(),
+            Ok(()) => self.runner.motion.solver.pose().clone(),
             Err(_) => base.clone(),
         }
     }

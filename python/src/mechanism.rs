@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use biela::cli;
 use biela::drawing::{Diagram, Followed, ForcePlace, svg};
+use biela::dynamics::Motion;
 use biela::kinematics::{
     Direction, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices, offer_start,
 };
@@ -305,7 +306,10 @@ impl Mechanism {
             let id = self.driver_named(driver)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&self.in_force(parameters)?)?;
-            Ok((id, runner.solver.range(id, &RangeSettings::default())))
+            Ok((
+                id,
+                runner.motion.solver.range(id, &RangeSettings::default()),
+            ))
         })?;
         Ok(range_row(py, &self.model, id, &range))
     }
@@ -321,7 +325,7 @@ impl Mechanism {
             let scenario = self.scenario(motions)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&self.in_force(parameters)?)?;
-            let modes = runner.solver.modes()?;
+            let modes = runner.motion.solver.modes()?;
             let count = 3 * self.model.bodies.len();
             let others = modes.others.into_iter();
             let others = others.map(|Mode { q, rcond, .. }| (q[..count].to_vec(), rcond));
@@ -349,12 +353,12 @@ impl Mechanism {
             let space = runner.linearize(&outputs, balance)?;
             let matrices = space.matrices().map(|rows| rows.concat());
             let held = space.held.iter().map(|held| {
-                let mechanism = runner.solver.mechanism();
+                let mechanism = runner.motion.solver.mechanism();
                 let name = held.name(mechanism).to_owned();
                 (name, held.size, held.describe(mechanism))
             });
             let held = held.collect();
-            let pose = runner.solver.pose();
+            let pose = runner.motion.solver.pose();
             Ok((
                 pose.drivers.clone(),
                 pose.q[..3 * self.model.bodies.len()].to_vec(),
@@ -396,9 +400,9 @@ impl Mechanism {
                 driver,
                 bounds: [None; 2],
             });
-            let Runner {
+            let Motion {
                 solver, solution, ..
-            } = &mut runner;
+            } = &mut runner.motion;
             let places = ForcePlace::sought(solver, solution);
             let values = ForcePlace::values(&places, solver, solution);
             let diagram = Diagram {
@@ -409,7 +413,7 @@ impl Mechanism {
                 instant_centres,
                 forces: places.into_iter().zip(values).collect(),
             };
-            let sheet = diagram.sheet(&mut runner.solver)?;
+            let sheet = diagram.sheet(&mut runner.motion.solver)?;
             let width = width.unwrap_or(sheet.width());
             Ok(svg::write(&sheet, width, transparent))
         })
@@ -434,7 +438,7 @@ impl Mechanism {
                     let mut runner = Runner::new(&scenario, &[])?;
                     let values = self.in_force(parameters)?;
                     runner.start(&values)?;
-                    pose = runner.solver.pose().clone();
+                    pose = runner.motion.solver.pose().clone();
                 }
             }
             self.text_at(&names, &pose)

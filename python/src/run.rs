@@ -28,8 +28,7 @@ pub(crate) struct Run {
     /// Cause of a stop before the last row.
     #[pyo3(get)]
     stop: Option<String>,
-    /// Singular positions that were near or were passed, parts that overlapped, and contacts that begin to
-    /// pull.
+    /// What is worth knowing of the motion, as `biela run` tells it.
     #[pyo3(get)]
     notices: Vec<String>,
 }
@@ -74,7 +73,7 @@ pub(crate) fn run(
     let mut runner = Runner::along(scenario, columns, by)?;
     let rows = scenario.times.len();
     runner.start(parameters)?;
-    let arrows = ForcePlace::sought(&mut runner.solver, &runner.solution);
+    let arrows = ForcePlace::sought(&mut runner.motion.solver, &runner.motion.solution);
     runner.watch_contacts()?;
     let mut result = Run {
         mechanism: scenario.driven.clone(),
@@ -85,23 +84,23 @@ pub(crate) fn run(
         stop: None,
         notices: scenario.whole_angles(),
     };
-    result.notices.extend(runner.events());
+    result.notices.extend(runner.notices());
     for row in 0..rows {
         if row > 0 {
-            if let Err(stop) = runner.advance(row) {
+            let advanced = runner.advance(row);
+            result.notices.extend(runner.notices());
+            if let Err(stop) = advanced {
                 result.stop = Some(stop);
                 break;
             }
-            result.notices.extend(runner.notices());
         }
-        result.notices.extend(runner.lift_offs());
         let values = columns.iter().map(|column| runner.value(column));
         result.values.extend(values);
         if !by.is_empty() {
             let directions = runner.directions(by)?;
             runner.differentiate(columns, &directions, &mut result.gradient)?;
         }
-        result.film.add(row, &runner);
+        result.film.add(row, &runner.motion);
         result.rows += 1;
     }
     Ok(result)

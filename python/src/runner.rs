@@ -3,10 +3,9 @@
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-use biela::dynamics::{self, FreeMotion, FreeState, Given, StateSpace};
+use biela::dynamics::{self, Given, Motion, StateSpace, on_cubic};
 use biela::kinematics::{
-    Blocked, Budget, Curve, Direction, Error, ForceParts, Output, OutputSource, Path, Pose,
-    Solution, Solver, SolverChoices,
+    Blocked, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solver, SolverChoices,
 };
 use biela::mechanism::{DriverId, Jet, Order, show_time};
 
@@ -16,24 +15,16 @@ use crate::scenario::Scenario;
 /// Number of variants that one solver runs in a batch: far more work than making the solver.
 pub(crate) const BATCH: usize = 32;
 
-/// A mechanism that moves from one time to the next.
+/// A mechanism in motion, and the samples that move it.
 pub(crate) struct Runner {
     pub(crate) scenario: Scenario,
     /// At the file's own values, from which each motion starts.
     home: Solver,
-    pub(crate) solver: Solver,
-    pub(crate) solution: Solution,
+    pub(crate) motion: Motion,
     path: Path,
     choices: SolverChoices,
-    near_singular: bool,
     /// The drivers' values at the start, at which those without samples stay.
     held: Vec<f64>,
-    /// The motion of freedoms and its state at the file's own values, if the mechanism has some.
-    free: Option<(FreeMotion, FreeState)>,
-    /// Whether motions that stop do so without a reason, which is cheaper.
-    pub(crate) gives_up: bool,
-    /// Whether forces are solved for the sake of contacts that pull alone.
-    watches_contacts: bool,
 }
 
 impl Runner {
@@ -49,28 +40,19 @@ impl Runner {
         directions: &[Direction],
     ) -> Result<Self, Failure> {
         let home = Solver::new(scenario.own.clone())?;
-        let solver = Solver::new(scenario.driven.clone())?;
-        let mut solution = Solution::new(&solver);
+        let mut motion = Motion::new(Solver::new(scenario.driven.clone())?);
         if columns.iter().any(Output::uses_forces) {
-            solution.seek_forces(&solver);
+            motion.seek_forces();
         }
-        let tolerance = solver.mechanism().simulation.tolerance;
-        let free = FreeMotion::along(&solver, tolerance, directions.to_vec()).map_err(stopped)?;
+        let prepared = motion.prepare_freedoms(directions.to_vec());
+        prepared.map_err(stopped)?;
         Ok(Self {
-            free: free.map(|free| {
-                let state = free.state();
-                (free, state)
-            }),
             home,
-            solution,
             scenario: scenario.clone(),
-            path: Path::new(solver.mechanism()),
+            path: Path::new(motion.mechanism()),
             choices: SolverChoices::default(),
-            solver,
-            near_singular: false,
+            motion,
             held: Vec::new(),
-            gives_up: false,
-            watches_contacts: false,
         })
     }
 
@@ -89,14 +71,13 @@ impl Runner {
 
     /// Lets freedoms move by the forces from the present pose on, with the velocities of the file.
     fn release(&mut self) -> Result<(), Failure> {
-        if let Some((free, _)) = &mut self.free {
-            let (scenario, held) = (&self.scenario, &self.held);
-            let part = Part {
-                scenario,
-                held,
-                row: 1,
-            };
-            free.start(&mut self.solver, &part).map_err(stopped)?;
+        let part = Part {
+            scenario: &self.scenario,
+            held: &self.held,
+            row: 1,
+        };
+        self.motion.release(&part).map_err(stopped)?;
+        if self.motion.free().is_some() {
             self.solve(0)?;
         }
         Ok(())
@@ -110,15 +91,10 @@ impl Runner {
         let path = (self.home).path_to_start(driven, parameters, self.scenario.times[0], value);
         self.home.start(home, &path)?;
         self.home.copy_choices(&mut self.choices);
-        if let Some((free, state)) = &mut self.free {
-            let selected = free.select(&mut self.solver, &mut self.solution, state);
-            debug_assert!(selected.is_ok(), "the file's own freedoms");
-        }
-        self.solver.resume(self.home.pose(), &self.choices);
+        self.motion.begin(self.home.pose(), &self.choices);
         self.path.from.copy_from_slice(parameters);
         self.path.to.copy_from_slice(parameters);
-        self.near_singular = false;
-        self.held.clone_from(&self.solver.pose().drivers);
+        self.held.clone_from(&self.motion.pose().drivers);
         self.solve(0)
     }
 
@@ -128,53 +104,23 @@ impl Runner {
     ///
     /// Cause of the mechanism's stop, and its place.
     pub(crate) fn advance(&mut self, row: usize) -> Result<(), String> {
-        let budget = Budget::usual(self.solver.mechanism());
-        self.solver.set_budget(budget);
-        if self.free.is_some() {
-            return self.advance_freely(row);
-        }
-        self.advance_to(row).map_err(|blocked| {
-            let mechanism = self.solver.mechanism();
-            let pose = self.solver.pose();
-            blocked.describe(mechanism, pose, Some(pose.time), |driver| {
-                mechanism.drivers[driver.index()].motion().is_some()
-                    || self.sample(driver, row).is_some()
-            })
-        })?;
-        self.solve(row).map_err(|error| {
-            let time = self.scenario.times[row];
-            format!("at t = {} s: {error}", show_time(time))
-        })
-    }
-
-    /// Moves a mechanism with freedoms on to a row's time.
-    fn advance_freely(&mut self, row: usize) -> Result<(), String> {
-        let Self {
-            free: Some((free, _)),
-            solver,
-            solution,
-            scenario,
-            held,
-            ..
-        } = self
-        else {
-            return Ok(());
-        };
+        self.motion.renew_budget();
+        self.head_for(row);
         let part = Part {
-            scenario,
-            held,
+            scenario: &self.scenario,
+            held: &self.held,
             row,
         };
-        let parameters = solver.pose().parameters.clone();
-        let time = scenario.times[row];
-        free.jump(solver, &part, &parameters)
-            .and_then(|()| free.advance(solver, solution, &part, time))
-            .map_err(|stop| stop.to_string())?;
+        let time = self.scenario.times[row];
+        let advanced = self.motion.advance(&self.path, &part, time);
+        advanced.map_err(|stop| {
+            stop.describe(&self.motion, |driver| self.sample(driver, row).is_some())
+        })?;
         self.solve(row)
             .map_err(|error| format!("at t = {} s: {error}", show_time(time)))
     }
 
-    /// Moves on to a row's time, without rates.
+    /// Moves on to a row's time, without rates; gives up early where that fails.
     ///
     /// # Errors
     ///
@@ -185,12 +131,8 @@ impl Runner {
     }
 
     fn track(&mut self) -> Result<(), Blocked> {
-        let tracked = if self.gives_up {
-            self.solver.track_or_give_up(&self.path)
-        } else {
-            self.solver.track(&self.path)
-        };
-        tracked.map(|_| ())
+        let tracked = self.motion.solver.track_or_give_up(&self.path);
+        tracked.map(drop)
     }
 
     /// Moves on to a row's time and to other parameters, without rates.
@@ -207,7 +149,7 @@ impl Runner {
 
     /// Returns whether a driver can go on by one turn while the others stay; moves there.
     pub(crate) fn turns(&mut self, driver: DriverId) -> bool {
-        let pose = self.solver.pose();
+        let pose = self.motion.pose();
         self.path.duration = 0.0;
         for (curve, now) in self.path.curves.iter_mut().zip(&pose.drivers) {
             if *curve != Curve::Motion {
@@ -221,7 +163,7 @@ impl Runner {
 
     /// Returns to a pose.
     pub(crate) fn return_to(&mut self, pose: &Pose) {
-        self.solver.restore(pose);
+        self.motion.solver.restore(pose);
         self.path.from.copy_from_slice(&pose.parameters);
         self.path.to.copy_from_slice(&pose.parameters);
     }
@@ -231,12 +173,12 @@ impl Runner {
     pub(crate) fn poses(&mut self, row: usize, parameters: &[f64]) -> Vec<Pose> {
         self.head_for(row);
         self.path.to.copy_from_slice(parameters);
-        self.solver.poses(&self.path).unwrap_or_default()
+        self.motion.solver.poses(&self.path).unwrap_or_default()
     }
 
     /// Leads the path from the present pose to a row's time.
     fn head_for(&mut self, row: usize) {
-        let pose = self.solver.pose();
+        let pose = self.motion.pose();
         self.path.start = pose.time;
         self.path.duration = self.scenario.times[row] - pose.time;
         for (index, curve) in self.path.curves.iter_mut().enumerate() {
@@ -262,19 +204,16 @@ impl Runner {
         balance: bool,
     ) -> Result<StateSpace, Failure> {
         let Self {
-            free,
-            solver,
-            solution,
+            motion,
             scenario,
             held,
             ..
         } = self;
-        let Some((free, _)) = free else {
-            let why = "the mechanism has no freedom: all that moves is driven";
-            return Err(Failure::Usage(why.to_owned()));
-        };
-        if solution.forces().is_none() {
-            solution.seek_forces(solver);
+        if motion.free().is_none() {
+            return Err(Failure::Usage(dynamics::Error::NoFreedom.to_string()));
+        }
+        if motion.solution.forces().is_none() {
+            motion.seek_forces();
         }
         let part = Part {
             scenario,
@@ -282,44 +221,16 @@ impl Runner {
             row: 0,
         };
         if balance {
-            free.balance(solver, solution, &part).map_err(stopped)?;
+            motion.balance(&part).map_err(stopped)?;
         }
-        part.loads(scenario.times[0], &mut solution.loads);
-        free.tell(solution);
-        free.linearize(solver, solution, outputs).map_err(stopped)
+        part.loads(scenario.times[0], &mut motion.solution.loads);
+        motion.take_rates();
+        motion.linearize(outputs).map_err(stopped)
     }
 
-    /// Returns what is worth knowing of the last [`advance`](Self::advance): singular positions
-    /// that are near or were passed.
-    pub(crate) fn notices(&mut self) -> Vec<String> {
-        let time = self.solver.pose().time;
-        let approach = self.solver.approach(&mut self.near_singular);
-        let crossed = self.solver.crossed().iter();
-        let crossed = crossed.map(|crossing| self.solver.describe_crossing(crossing));
-        let texts = approach.map(|approach| approach.to_string()).into_iter();
-        let texts = texts.chain(crossed);
-        let texts = texts.map(|text| format!("t = {} s: {text}", show_time(time)));
-        let mut notices: Vec<String> = texts.collect();
-        notices.extend(self.events());
-        notices
-    }
-
-    /// Returns the events of a free motion since the last call.
-    pub(crate) fn events(&mut self) -> Vec<String> {
-        let mechanism = self.solver.mechanism();
-        let events = self.free.iter_mut().flat_map(|(free, _)| free.events());
-        let mut notices: Vec<_> = events.map(|event| event.describe(mechanism)).collect();
-        notices.extend(self.overlaps());
-        notices
-    }
-
-    /// Returns what has overlapped since the last call, at the start or where inputs jumped.
-    fn overlaps(&mut self) -> Vec<String> {
-        let mechanism = self.solver.mechanism();
-        let overlaps = self.free.iter_mut().flat_map(|(free, _)| free.overlaps());
-        overlaps
-            .map(|overlap| overlap.describe(mechanism))
-            .collect()
+    /// Returns what is worth knowing and was not told yet.
+    pub(crate) fn notices(&mut self) -> impl Iterator<Item = String> {
+        self.motion.notices().map(|notice| notice.to_string())
     }
 
     /// Watches contacts, which tell where they pull though nobody asks for forces.
@@ -328,20 +239,10 @@ impl Runner {
     ///
     /// Rates do not exist at the pose, that of the first row.
     pub(crate) fn watch_contacts(&mut self) -> Result<(), Error> {
-        let has_dynamics = self.solver.mechanism().has_dynamics();
-        let asks_forces = self.solution.forces().is_some();
-        if has_dynamics && !asks_forces && self.solver.forces().contacts() > 0 {
-            self.solution.seek_forces(&self.solver);
-            self.watches_contacts = true;
+        if self.motion.watch_contacts() {
             self.solve(0)?;
         }
         Ok(())
-    }
-
-    /// Returns what is worth knowing of the forces at the pose: contacts that begin to pull.
-    pub(crate) fn lift_offs(&mut self) -> Vec<String> {
-        let lift_offs = self.solution.lift_offs(&self.solver);
-        lift_offs.map(|lift_off| lift_off.to_string()).collect()
     }
 
     fn sample(&self, driver: DriverId, row: usize) -> Option<Jet> {
@@ -351,7 +252,7 @@ impl Runner {
 
     /// Returns the value of a column \[SI\].
     pub(crate) fn value(&self, column: &Output) -> f64 {
-        self.solution.value(&self.solver, column)
+        self.motion.value(column)
     }
 
     /// Returns the directions at the pose: those of a free motion have changed with it.
@@ -363,11 +264,7 @@ impl Runner {
         &mut self,
         own: &'a [Direction],
     ) -> Result<Cow<'a, [Direction]>, Failure> {
-        let Some((free, _)) = &mut self.free else {
-            return Ok(Cow::Borrowed(own));
-        };
-        let varied = free.varied(&mut self.solver, &mut self.solution);
-        varied.map(Cow::Owned).map_err(stopped)
+        self.motion.directions(own).map_err(stopped)
     }
 
     /// Adds the derivatives of columns along directions, by direction, then by column.
@@ -381,9 +278,9 @@ impl Runner {
         directions: &[Direction],
         derivatives: &mut Vec<f64>,
     ) -> Result<(), Error> {
-        let Self {
+        let Motion {
             solver, solution, ..
-        } = self;
+        } = &mut self.motion;
         if columns.iter().any(Output::uses_forces) {
             for direction in directions {
                 derivatives.extend(solution.changes(solver, columns, direction)?);
@@ -416,27 +313,19 @@ impl Runner {
     ///
     /// They do not exist at a singular position.
     pub(crate) fn solve(&mut self, row: usize) -> Result<(), Error> {
-        if let Some((free, _)) = &self.free {
-            free.tell(&mut self.solution);
-        }
-        for (place, sizes) in &self.scenario.loads {
-            if let Some(load) = self.solution.loads.get_mut(*place) {
+        let Self {
+            motion, scenario, ..
+        } = self;
+        motion.take_rates();
+        for (place, sizes) in &scenario.loads {
+            if let Some(load) = motion.solution.loads.get_mut(*place) {
                 *load = sizes[row];
             }
         }
-        self.solution.follow_motions(&self.solver);
-        for samples in &self.scenario.samples {
-            self.solution.driver_rates[samples.driver.index()] = samples.at(row);
+        for samples in &scenario.samples {
+            motion.solution.driver_rates[samples.driver.index()] = samples.at(row);
         }
-        if !self.watches_contacts {
-            return self.solution.solve(&mut self.solver);
-        }
-        self.solution.solve_rates(&mut self.solver)?;
-        // Forces may exist at fewer poses than the values that are asked for.
-        let _ = self
-            .solution
-            .solve_forces(&mut self.solver, ForceParts::REACTIONS);
-        Ok(())
+        motion.solve()
     }
 }
 
@@ -472,23 +361,7 @@ impl Given for Part<'_> {
         };
         let (rows, h, s) = self.rows(time);
         let [from, to] = rows.map(|row| samples.at(row));
-        if h <= 0.0 {
-            return to;
-        }
-        let [before, after] = [from, to].map(|jet| h * jet.first());
-        let rise = to.value - from.value;
-        // Coefficients of s² and s³.
-        let [square, cube] = [
-            3.0 * rise - 2.0 * before - after,
-            before + after - 2.0 * rise,
-        ];
-        Jet::new(
-            from.value + s * (before + s * (square + s * cube)),
-            [
-                (before + s * (2.0 * square + 3.0 * s * cube)) / h,
-                (2.0 * square + 6.0 * s * cube) / (h * h),
-            ],
-        )
+        on_cubic(from, to, h, s)
     }
 
     fn loads(&self, time: f64, loads: &mut [f64]) {

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 
 use super::column::Output;
 use super::error::Error;
-use super::motion::Motion;
 use super::output::tell_written;
 use super::recorder::Recorder;
 use super::stdout::is_stdout;
+use crate::dynamics::Motion;
 
 /// Writes rows as they come.
 pub(super) struct Csv {
@@ -53,13 +53,13 @@ impl Recorder for Csv {
     /// Writes numbers such that reading them gives the same bits; zero has no sign.
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
         self.write(|out, columns| {
-            write!(out, "{:?}", motion.solver.pose().time)?;
+            write!(out, "{:?}", motion.pose().time)?;
             let mut values = columns.iter().map(|column| motion.value(column));
             values.try_for_each(|value| write!(out, ",{:?}", value + 0.0))
         })
     }
 
-    fn finish(mut self: Box<Self>, _motion: &Motion) -> Result<(), Error> {
+    fn finish(mut self: Box<Self>, _motion: &Motion, _events: &[f64]) -> Result<(), Error> {
         self.out.flush().map_err(Error::write(&self.path))?;
         tell_written(&self.path);
         Ok(())

@@ -12,7 +12,7 @@ use super::film::Film;
 use super::form::Form;
 use super::input::Input;
 use super::live;
-use super::motion::Motion;
+use super::motion::SignalledMotion;
 use super::signals::Signals;
 use crate::drawing::animation::{Animation, fill, page_with, player};
 use crate::drawing::svg::escape;
@@ -195,7 +195,7 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let mut solver = Solver::new(Arc::clone(&driven))?;
     solver.restore(&home);
     let start = simulation.start;
-    let at_start = |solver| Motion::from(solver, Signals::default(), start);
+    let at_start = |solver| SignalledMotion::from(solver, Signals::default(), start);
     let mut motion = at_start(solver)?;
     if is_moved && is_free {
         motion = match motion.with_freedoms() {
@@ -212,18 +212,18 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let moments = (MOST_PLACED / own.bodies.len().max(1)).clamp(MOMENTS / 10, MOMENTS);
     let step = duration / moments as f64;
     let mut film = Film::new(told, moments as u64, [start, step]);
-    film.add(&motion);
+    film.add(&motion.motion);
     if duration > 0.0 {
         for moment in 1..=moments {
             // The film ends where the mechanism cannot go on.
             if motion.advance(start + moment as f64 * step).is_err() {
                 break;
             }
-            film.add(&motion);
+            film.add(&motion.motion);
         }
     }
     Ok(Shown {
-        animation: film.animation(&motion),
+        animation: film.animation(&motion.motion),
         moving,
         ranges,
     })

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use super::column::Output;
 use super::error::Error;
-use super::motion::Motion;
 use super::output::{tell_written, write};
 use super::picture::extension;
 use super::recorder::Recorder;
 use crate::drawing::ForcePlace;
 use crate::drawing::animation::{Animation, Clock, Moment, moving_gif, moving_svg, page};
+use crate::dynamics::Motion;
 
 /// The moments of a run.
 pub(super) struct Film {
@@ -53,7 +53,7 @@ impl Film {
         if self.rows.is_multiple_of(self.stride) {
             let Motion {
                 solver, solution, ..
-            } = motion;
+            } = &motion;
             let moment = Moment::record(solver, solution, &self.columns, &self.forces);
             self.moments.push(moment);
             self.clock.stop = solver.pose().time;
@@ -64,8 +64,8 @@ impl Film {
     /// Returns the animation of all rows added.
     pub(super) fn animation(self, motion: &Motion) -> Animation {
         Animation::of_moments(
-            motion.solver.mechanism(),
-            &motion.solver.pose().parameters,
+            motion.mechanism(),
+            &motion.pose().parameters,
             &self.columns,
             self.forces,
             self.clock,
@@ -86,7 +86,7 @@ impl Recorder for FilmFile {
         Ok(())
     }
 
-    fn finish(self: Box<Self>, motion: &Motion) -> Result<(), Error> {
+    fn finish(self: Box<Self>, motion: &Motion, _events: &[f64]) -> Result<(), Error> {
         let animation = self.film.animation(motion);
         let content = match &*extension(&self.path) {
             "svg" => moving_svg(&animation).into_bytes(),

@@ -5,6 +5,8 @@ use std::io::Write as _;
 
 use annotate_snippets::renderer::{DEFAULT_ERROR_STYLE, DEFAULT_NOTE_STYLE, DEFAULT_WARNING_STYLE};
 
+use crate::dynamics::Notice;
+
 /// A message; its text begins with its kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Message {
@@ -35,6 +37,16 @@ impl Message {
             Self::Error(text) => ("error", DEFAULT_ERROR_STYLE, text),
             Self::Warning(text) => ("warning", DEFAULT_WARNING_STYLE, text),
             Self::Note(text) => ("note", DEFAULT_NOTE_STYLE, text),
+        }
+    }
+}
+
+impl From<Notice<'_>> for Message {
+    fn from(notice: Notice<'_>) -> Self {
+        let text = notice.to_string();
+        match notice {
+            Notice::Event(..) | Notice::Crossing(..) => Self::Note(text),
+            _ => Self::Warning(text),
         }
     }
 }

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use super::column::{Output, Source};
 use super::error::Error;
 use super::message::Message;
-use super::motion::Motion;
 use super::picture::Format;
 use super::recorder::Recorder;
 use crate::drawing::{Axis, COLOURS, Chart, Line, Panel, Sheet};
+use crate::dynamics::Motion;
 use crate::mechanism::{BodyId, Dimension, Mechanism, Order, Signal, Unit};
 
 /// Largest number of bodies whose lines can be told apart.
@@ -189,7 +189,7 @@ fn looks(columns: &[Output], mechanism: &Mechanism) -> Vec<usize> {
 
 impl Recorder for Plot {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
-        self.times.push(motion.solver.pose().time);
+        self.times.push(motion.pose().time);
         if let Some((column, values)) = &mut self.over {
             values.push(motion.value(column));
         }
@@ -199,7 +199,7 @@ impl Recorder for Plot {
         Ok(())
     }
 
-    fn finish(mut self: Box<Self>, motion: &Motion) -> Result<(), Error> {
+    fn finish(mut self: Box<Self>, motion: &Motion, events: &[f64]) -> Result<(), Error> {
         if self.notes_omission {
             if let Some([shown, moving]) = self.leave_out() {
                 let note = format!(
@@ -210,7 +210,7 @@ impl Recorder for Plot {
             self.leave_out_constants();
         }
         let (path, format) = (self.path.clone(), self.format);
-        let sheet = Sheet::chart(&self.chart(motion.solver.mechanism(), &motion.events));
+        let sheet = Sheet::chart(&self.chart(motion.mechanism(), events));
         format.write_chart(&path, &sheet)
     }
 }

@@ -6,9 +6,9 @@ use rust_xlsxwriter::{DocProperties, ExcelDateTime, Format, Workbook, XlsxError}
 
 use super::column::Output;
 use super::error::Error;
-use super::motion::Motion;
 use super::output::{tell_written, write};
 use super::recorder::Recorder;
+use crate::dynamics::Motion;
 
 /// Most rows of a sheet, with the line of names.
 pub(super) const MOST_ROWS: u64 = 1_048_576;
@@ -59,14 +59,14 @@ impl Xlsx {
 
 impl Recorder for Xlsx {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
-        let time = std::iter::once(motion.solver.pose().time);
+        let time = std::iter::once(motion.pose().time);
         let values = self.columns.iter().map(|column| motion.value(column));
         self.rows.push(time.chain(values).collect());
         Ok(())
     }
 
-    fn finish(self: Box<Self>, motion: &Motion) -> Result<(), Error> {
-        let content = self.content(&motion.solver.mechanism().name);
+    fn finish(self: Box<Self>, motion: &Motion, _events: &[f64]) -> Result<(), Error> {
+        let content = self.content(&motion.mechanism().name);
         let content = content.map_err(|error| Error::Usage(format!("--output: {error}")))?;
         write(&self.path, &content)?;
         tell_written(&self.path);

@@ -31,6 +31,9 @@ pub enum Error {
         /// Kind and name of each.
         freedoms: Vec<String>,
     },
+    /// Nothing moves by forces.
+    #[error("the mechanism has no freedom: all that moves is driven")]
+    NoFreedom,
     /// Derivatives along a motion end at its first event.
     #[error(
         "the derivatives of the motion end at t = {} s, where it meets a stop or friction changes",

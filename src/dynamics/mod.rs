@@ -10,6 +10,8 @@
 //! |---|---|
 //! | [`integrator`] | ordinary differential equations, one step at a time |
 //! | `error` | reasons for which a motion stops |
+//! | `moving` | [`Motion`]: a mechanism in motion, driven or free, which hosts move |
+//! | `notice` | [`Notice`]: what is worth knowing of a motion, in words |
 //! | `given` | what comes from outside: inputs |
 //! | `state` | [`FreeState`]: all numbers on which a motion depends |
 //! | `charts` | the coordinates in which the freedoms are integrated |
@@ -56,6 +58,8 @@ mod impact;
 pub mod integrator;
 mod linear;
 mod motion;
+mod moving;
+mod notice;
 mod overlap;
 mod passive;
 mod settle;
@@ -72,10 +76,12 @@ pub use balance::Equilibrium;
 pub use charts::keeps_coordinates;
 pub use error::Error;
 pub use event::{Event, EventKind};
-pub use given::Given;
+pub use given::{Given, GivenByPath, on_cubic};
 pub use held::Held;
 pub use linear::StateSpace;
 pub use motion::FreeMotion;
+pub use moving::{Motion, Stop};
+pub use notice::{Notice, Told};
 pub use overlap::Overlap;
 pub use passive::{Mode, Passive};
 pub use starts::KeptStart;

@@ -580,6 +580,11 @@ impl FreeMotion {
         self.overlaps.drain(..)
     }
 
+    /// Returns what has overlapped and the events since the last call.
+    pub(super) fn news(&mut self) -> (impl Iterator<Item = Overlap>, impl Iterator<Item = Event>) {
+        (self.overlaps.drain(..), self.events.drain(..))
+    }
+
     /// Gives a solution the rates of all drivers and the passive forces at the accepted point. Those that
     /// are inputs stay.
     pub fn tell(&self, solution: &mut Solution) {

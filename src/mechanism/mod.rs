@@ -17,6 +17,7 @@
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `play` | [`Play`]: joints that open |
 //! | `stop` | [`Stop`]: limits of a coordinate |
+//! | `excursion` | [`Excursion`]: a driver beyond its limits |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
 //! | `setting` | start values of the FMU's settings |
 //! | `names`, `synonym`, `lookup`, `id` | names, other words for them, and what they stand for |
@@ -31,6 +32,7 @@ mod curve;
 mod derived;
 mod diagnostic;
 mod encoding;
+mod excursion;
 mod expression;
 mod force;
 mod force_quantity;
@@ -64,6 +66,7 @@ pub use coupling::{CoordinateEquation, MOST_COUPLED};
 pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
+pub use excursion::Excursion;
 #[cfg(feature = "cli")]
 pub(crate) use expression::is_taken;
 pub use expression::{Expression, ExpressionError, LinearForm, Variable};
@@ -459,23 +462,6 @@ impl Driver {
     #[must_use]
     pub fn noun(&self) -> &'static str {
         if self.is_free() { "freedom" } else { "driver" }
-    }
-
-    /// Describes that a value \[m or rad\] at `time` \[s\] has gone beyond a limit. `beyond`, which
-    /// this sets, tells whether the value before was beyond one: an excursion is told once.
-    pub fn excursion(&self, value: f64, time: f64, beyond: &mut bool) -> Option<String> {
-        let above = self.max.filter(|max| value > *max).map(|max| ("max", max));
-        let below = self.min.filter(|min| value < *min).map(|min| ("min", min));
-        let exceeded = above.or(below);
-        let was_beyond = std::mem::replace(beyond, exceeded.is_some());
-        let (key, limit) = exceeded.filter(|_| !was_beyond)?;
-        let [value, limit] = self.coordinate.kind.show_apart(value, limit);
-        let time = show_time(time);
-        Some(format!(
-            "t = {time} s: driver `{}` is at {value}, beyond its `{key}` = {limit}; the mechanism \
-             follows it",
-            self.name
-        ))
     }
 }
 

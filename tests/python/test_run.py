@@ -255,6 +255,27 @@ def test_a_start_beyond_a_rope_is_warned_of():
     assert_allclose(place, [0.6, -0.8], rtol=AT_ROUNDING)
 
 
+def test_limits_and_ropes_off_their_pulleys_are_warned_of_once_per_excursion():
+    """The rope passes below the pulley until its straight line would, at a height of -0.3 m or so."""
+    lowered = biela.loads(
+        "format = 1\nname = 'lowered'\n[ground.markers]\ntrack = [0, 0]\nF = [1, 0]\n"
+        "guide = [2, 0, '90*deg']\n[bodies]\nnear = { markers = { P = [0, 0] } }\n"
+        "far = { markers = { Q = [0, 0, '90*deg'] }, estimate = [2, 0.5, 0] }\n[joints]\n"
+        "track = { type = 'translational', markers = ['ground.track', 'near.P'] }\n"
+        "guide = { type = 'translational', markers = ['ground.guide', 'far.Q'] }\n"
+        "rope = { type = 'rope', length = 2.1, markers = ['near.P', "
+        "{ marker = 'ground.F', radius = 0.1, side = 'left' }, 'far.Q'] }\n[drivers]\n"
+        "height = { coordinate = 'x', markers = ['ground.guide', 'far.Q'], start = 0.5, min = -0.2 }\n"
+    )
+    heights = [0.2, -0.15, -0.4, -0.6, 0.1, -0.5]
+    with pytest.warns(biela.MechanismWarning) as warned:
+        lowered.run(t=np.arange(6.0), drive={"height": heights})
+    texts = [str(warning.message) for warning in warned]
+    for what in ["driver `height` is at", "rope `rope` would leave its pulley"]:
+        times = [text.split(" s:")[0] for text in texts if what in text]
+        assert times == ["t = 2", "t = 5"], texts
+
+
 def test_arrays_that_look_like_degrees_are_warned_of(mechanism):
     four_bar = mechanism("four_bar")
     turn = np.linspace(0, 360, 8)

@@ -20,6 +20,7 @@ mod integrator;
 mod machines;
 mod modes;
 mod motion;
+mod notices;
 mod range;
 mod redundancy;
 mod rope;

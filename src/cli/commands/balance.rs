@@ -35,7 +35,7 @@ pub(in crate::cli) struct Balance {
 impl Balance {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let mut at = AtRest::read(&self.file, &self.conditions)?;
-        let mechanism = at.solver.mechanism().clone();
+        let mechanism = at.motion.mechanism().clone();
         if !self.all {
             let equilibrium = at.balance()?;
             return print(&describe(&mechanism, &equilibrium));

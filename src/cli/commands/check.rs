@@ -127,7 +127,7 @@ impl Check {
             .then(|| AtRest::start(input.source.name(), input.assemble()?, Signals::default()));
         if let Some(Ok(at)) = &free {
             // Parts that overlapped have been moved apart.
-            solver.restore(at.solver.pose());
+            solver.restore(at.motion.pose());
         }
         print(&describe_pose(&mut solver))?;
         input.check_rest(&mut solver)?;
@@ -367,7 +367,8 @@ fn excursions(solver: &Solver) -> Vec<String> {
     for time in (0..=times.steps).map(|row| times.at(row)) {
         for (id, driver, beyond) in &mut limited {
             let value = solver.motion(*id, time).value;
-            told.extend(driver.excursion(value, time, beyond));
+            let excursion = driver.excursion(value, time, beyond);
+            told.extend(excursion.map(|excursion| excursion.to_string()));
         }
     }
     told

@@ -11,11 +11,12 @@ use crate::cli::error::Error;
 use crate::cli::input::Input;
 use crate::cli::input_files::InputFiles;
 use crate::cli::message::Message;
-use crate::cli::motion::Motion;
+use crate::cli::motion::SignalledMotion;
 use crate::cli::output::{tell_written, write};
 use crate::cli::picture::{Format, extension};
 use crate::cli::signals::Signals;
 use crate::drawing::{Diagram, Followed, ForcePlace, usual_driver};
+use crate::dynamics::Motion;
 use crate::exchange::WorkshopDrawing;
 use crate::mechanism::Mechanism;
 
@@ -113,12 +114,17 @@ impl Draw {
         let mut forces = Vec::new();
         if self.forces {
             let start = solver.pose().time;
-            let motion = Motion::from(solver, Signals::default(), start);
+            let motion = SignalledMotion::from(solver, Signals::default(), start);
             let motion = motion.and_then(|motion| motion.with_forces(true));
             let motion = motion.map_err(|error| input.error(error))?;
-            solver = motion.solver;
-            let places = ForcePlace::sought(&mut solver, &motion.solution);
-            let values = ForcePlace::values(&places, &solver, &motion.solution);
+            let Motion {
+                solver: moved,
+                solution,
+                ..
+            } = motion.motion;
+            solver = moved;
+            let places = ForcePlace::sought(&mut solver, &solution);
+            let values = ForcePlace::values(&places, &solver, &solution);
             forces = places.into_iter().zip(values).collect();
         }
         let diagram = Diagram {

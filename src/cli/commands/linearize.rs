@@ -50,7 +50,7 @@ impl Linearize {
         if self.balance {
             at.balance()?;
         }
-        let mechanism = at.solver.mechanism().clone();
+        let mechanism = at.motion.mechanism().clone();
         let mut outputs = Output::all(&mechanism);
         if !self.variables.is_empty() {
             outputs = Output::named(&outputs, &self.variables, &mechanism)?;
@@ -65,7 +65,7 @@ impl Linearize {
         }
         let held = space.held.iter();
         let held = held.map(|held| (held.name(&mechanism).to_owned(), json!(held.size)));
-        let drivers = mechanism.drivers.iter().zip(&at.solver.pose().drivers);
+        let drivers = mechanism.drivers.iter().zip(&at.motion.pose().drivers);
         let values = drivers.map(|(driver, value)| (driver.name.clone(), json!(value)));
         let [a, b, c, d] = space.matrices();
         let text = json!({

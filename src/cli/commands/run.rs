@@ -13,7 +13,7 @@ use crate::cli::film::{Film, FilmFile};
 use crate::cli::input::Input;
 use crate::cli::input_files::InputFiles;
 use crate::cli::message::{Message, tell};
-use crate::cli::motion::Motion;
+use crate::cli::motion::SignalledMotion;
 use crate::cli::picture::{Format, extension};
 use crate::cli::plot::Plot;
 use crate::cli::progress::Progress;
@@ -154,7 +154,7 @@ impl Run {
         if let (Some(path), Some(format)) = (self.plot.clone(), format) {
             recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice, over)));
         }
-        let mut motion = Motion::start(home_solver, scenario);
+        let mut motion = SignalledMotion::start(home_solver, scenario);
         motion = motion.and_then(|motion| match asks_forces {
             true => motion.with_forces(asks_reactions),
             false => motion.with_contacts_watched(),
@@ -167,13 +167,18 @@ impl Run {
         if let Some(path) = self.animate.clone() {
             let mut film = Film::new(told, times.steps, [times.start, times.step]);
             if self.forces {
-                film.show_forces(ForcePlace::sought(&mut motion.solver, &motion.solution));
+                film.show_forces(ForcePlace::sought(
+                    &mut motion.motion.solver,
+                    &motion.motion.solution,
+                ));
             }
             recorders.push(Box::new(FilmFile { film, path }));
         }
         let outcome = self.play(&mut motion, input.source.name(), &times, &mut recorders);
         // Also after a dead point: the results up to there are written.
-        let finished = recorders.into_iter().map(|r| r.finish(&motion));
+        let finished = recorders
+            .into_iter()
+            .map(|r| r.finish(&motion.motion, &motion.events));
         let failed: Vec<Error> = finished.filter_map(Result::err).collect();
         if let Some(line) = motion.describe_integration() {
             tell(line);
@@ -190,7 +195,7 @@ impl Run {
     /// fails.
     fn play(
         &self,
-        motion: &mut Motion,
+        motion: &mut SignalledMotion,
         file: &str,
         times: &Times,
         recorders: &mut Vec<Box<dyn Recorder>>,
@@ -210,7 +215,7 @@ impl Run {
                 why,
             })?;
             for index in 0..recorders.len() {
-                if let Err(error) = recorders[index].add(motion) {
+                if let Err(error) = recorders[index].add(&motion.motion) {
                     recorders.remove(index);
                     return Err(error);
                 }

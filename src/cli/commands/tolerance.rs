@@ -11,9 +11,10 @@ use crate::cli::column::{Output, Source};
 use crate::cli::conditions::Conditions;
 use crate::cli::error::Error;
 use crate::cli::input::Input;
-use crate::cli::motion::Motion;
+use crate::cli::motion::SignalledMotion;
 use crate::cli::output::print;
 use crate::cli::times::Span;
+use crate::dynamics::Motion;
 use crate::kinematics::Direction;
 use crate::mechanism::{Mechanism, Order, ParameterId, Signal, Unit};
 
@@ -68,7 +69,7 @@ impl Tolerance {
             )));
         }
         let columns = self.columns(&mechanism)?;
-        let mut motion = Motion::start(input.assemble()?, scenario);
+        let mut motion = SignalledMotion::start(input.assemble()?, scenario);
         if columns.iter().any(Output::uses_forces) {
             let reactions = columns.iter().any(Output::uses_reactions);
             motion = motion.and_then(|motion| motion.with_forces(reactions));
@@ -122,18 +123,18 @@ fn tolerances(mechanism: &Mechanism) -> Result<Vec<(ParameterId, f64)>, Error> {
 /// Adds the deviations at the present time.
 fn add(
     deviations: &mut [Deviation],
-    motion: &mut Motion,
+    motion: &mut SignalledMotion,
     columns: &[Output],
     tolerances: &[(ParameterId, f64)],
 ) -> Result<(), crate::kinematics::Error> {
-    let time = motion.solver.pose().time;
-    let mut direction = Direction::zero(motion.solver.mechanism());
+    let Motion {
+        solver, solution, ..
+    } = &mut motion.motion;
+    let time = solver.pose().time;
+    let mut direction = Direction::zero(solver.mechanism());
     let mut parts = vec![Vec::with_capacity(tolerances.len()); columns.len()];
     for (parameter, tolerance) in tolerances {
         direction.parameters[parameter.index()] = *tolerance;
-        let Motion {
-            solver, solution, ..
-        } = &mut *motion;
         let changes = solution.changes(solver, columns, &direction)?;
         for (parts, change) in parts.iter_mut().zip(changes) {
             parts.push(change.abs());

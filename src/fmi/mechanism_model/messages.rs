@@ -198,8 +198,8 @@ impl MechanismModel {
         let values = &self.solver.pose().drivers;
         let monitors = self.course.monitors.iter_mut().zip(values);
         for (driver, (monitor, value)) in self.mechanism.drivers.iter().zip(monitors) {
-            if let Some(message) = driver.excursion(*value, time, &mut monitor.beyond) {
-                log.advise(Advice::Limits, || message);
+            if let Some(excursion) = driver.excursion(*value, time, &mut monitor.beyond) {
+                log.advise(Advice::Limits, || excursion.to_string());
             }
         }
         if !log.wants(Category::Warning) {

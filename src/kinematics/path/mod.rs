@@ -82,6 +82,23 @@ impl Curve {
         ])
     }
 
+    /// Returns an input's polynomial a time `tau` after s = 0, without the rest of a jump; `None` for
+    /// other curves.
+    #[inline]
+    #[must_use]
+    pub fn input_after(&self, tau: f64) -> Option<Jet> {
+        let Self::Input {
+            position,
+            velocity,
+            acceleration,
+            ..
+        } = *self
+        else {
+            return None;
+        };
+        Some(Jet::new(position, [velocity, acceleration]).after(tau))
+    }
+
     /// Returns a held input at `position`, reached straight from the value `now`.
     #[must_use]
     pub fn held(position: f64, now: f64) -> Self {
@@ -179,11 +196,9 @@ impl Path {
                     acceleration,
                     jump,
                 } => {
-                    let tau = s * h;
-                    let travel = tau * (velocity + 0.5 * tau * acceleration);
-                    let rate = h * (velocity + tau * acceleration) - jump;
-                    out.value = position + travel + (1.0 - s) * jump;
-                    out.derivatives = [rate, h * h * acceleration];
+                    let at = Jet::new(position, [velocity, acceleration]).after(s * h);
+                    out.value = at.value + (1.0 - s) * jump;
+                    out.derivatives = [h * at.first() - jump, h * h * acceleration];
                 }
                 Curve::Polynomial(coefficients) => {
                     let on = |derivative| polynomial(&coefficients, derivative, s);

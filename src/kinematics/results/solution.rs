@@ -5,7 +5,7 @@ use crate::kinematics::analysis::Direction;
 use crate::kinematics::constraint::{Constraint, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::kinematics::forces::{
-    ForceParts, ForceQuantity, ForceSensitivity, Forces, Friction, KnownMotion, LiftOff,
+    ForceParts, ForceQuantity, ForceSensitivity, Forces, Friction, KnownMotion,
 };
 use crate::kinematics::path::Rates;
 use crate::kinematics::solver::Solver;
@@ -59,8 +59,6 @@ pub struct Solution {
     forces: Option<Forces>,
     /// The parts of the forces that are sought.
     parts: ForceParts,
-    /// Whether each contact pulls.
-    lifted: Vec<bool>,
     /// Friction of a mechanism without freedoms, whose motion would tell the loads.
     friction: Friction,
     /// Place of each, in its order.
@@ -88,7 +86,6 @@ impl Solution {
             loads: Vec::new(),
             forces: None,
             parts: ForceParts::ALL,
-            lifted: Vec::new(),
             friction: Friction::default(),
             rubbed: Vec::new(),
         }
@@ -98,7 +95,6 @@ impl Solution {
     pub fn seek_forces(&mut self, solver: &Solver) {
         let forces = solver.forces();
         self.loads = vec![0.0; forces.loads()];
-        self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
         if !solver.mechanism().has_freedoms() {
             self.friction = solver.friction();
@@ -121,7 +117,7 @@ impl Solution {
 
     /// Leaves out reactions, unless contacts may pull: efforts exist where reactions have no limit.
     pub fn leave_out_reactions(&mut self) {
-        self.parts.reactions = !self.lifted.is_empty();
+        self.parts.reactions = self.forces().is_some_and(|forces| forces.contacts() > 0);
     }
 
     /// Returns the forces, if they are sought.
@@ -311,21 +307,6 @@ impl Solution {
         forces.map_or(0.0, |forces| {
             solver.effort_rounding(&self.rates, driver, forces)
         })
-    }
-
-    /// Returns the contacts that began to pull since the last call.
-    pub fn lift_offs<'a>(&'a mut self, solver: &'a Solver) -> impl Iterator<Item = LiftOff<'a>> {
-        let Self {
-            forces,
-            lifted,
-            parts,
-            ..
-        } = self;
-        let begun = forces
-            .as_ref()
-            .filter(|_| parts.reactions)
-            .map(|forces| solver.lift_offs(forces, lifted));
-        begun.into_iter().flatten()
     }
 }
 

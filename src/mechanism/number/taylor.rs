@@ -37,6 +37,20 @@ impl<S, const N: usize> Taylor<S, N> {
     }
 }
 
+impl Taylor<f64, 2> {
+    /// Returns the motion a time `tau` later whose acceleration stays as it is: a parabola, or a line
+    /// where it is zero.
+    #[inline]
+    #[must_use]
+    pub fn after(self, tau: f64) -> Self {
+        let [first, second] = self.derivatives;
+        Self::new(
+            self.value + tau * (first + 0.5 * tau * second),
+            [first + tau * second, second],
+        )
+    }
+}
+
 impl<S: Number, const N: usize> Taylor<S, N> {
     /// Makes a number that does not vary.
     #[must_use]

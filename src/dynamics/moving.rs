@@ -1,0 +1,481 @@
+//! A mechanism in motion.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::balance::Equilibrium;
+use super::error::Error;
+use super::given::Given;
+use super::linear::StateSpace;
+use super::motion::FreeMotion;
+use super::notice::{Notice, Told};
+use super::state::FreeState;
+use crate::kinematics::{
+    self, Blocked, Budget, Direction, ForceParts, Output, Path, Pose, Progress, Solution, Solver,
+    SolverChoices,
+};
+use crate::mechanism::{DriverId, Mechanism};
+
+/// A mechanism that moves from one time to the next: along the paths of its drivers, and by forces where
+/// it has freedoms that were [released](Self::release).
+///
+/// ```
+/// use biela::dynamics::Motion;
+/// use biela::kinematics::{Curve, Path, Solver};
+/// use biela::mechanism::{Mechanism, Source};
+///
+/// let text = include_str!("../../mechanisms/four_bar.toml");
+/// let (mechanism, _) = Mechanism::parse(&Source::new("four_bar.toml", text)).unwrap();
+/// let mut path = Path::new(&mechanism);
+/// let mut motion = Motion::new(Solver::assembled(mechanism.into(), &path).unwrap());
+/// // The crank turns by 0.1 rad in 0.01 s.
+/// let now = motion.pose().drivers[0];
+/// path.curves[0] = Curve::held(now + 0.1, now);
+/// path.duration = 0.01;
+/// motion.follow(&path).unwrap();
+/// assert_eq!(motion.pose().drivers[0], now + 0.1);
+/// assert_eq!(motion.notices().count(), 0);
+/// ```
+#[derive(Debug)]
+pub struct Motion {
+    /// The solver, at the pose; of a free motion maybe in other coordinates than the file's.
+    pub solver: Solver,
+    /// Rates and forces at the pose where they were [solved](Self::solve) last; what is given of them
+    /// is the host's.
+    pub solution: Solution,
+    free: Option<Free>,
+    told: Told,
+    /// Whether nobody has been told of the path followed last.
+    has_passed: bool,
+    /// Whether the mechanism has stopped on it: its pose is then told with the reason.
+    has_stopped: bool,
+    /// Whether forces are solved for the sake of contacts that pull alone.
+    watches_contacts: bool,
+    /// Whether a free motion ends at events.
+    ends_at_events: bool,
+    /// Whether the reactions of contacts were solved at the pose.
+    knows_contacts: bool,
+}
+
+/// The motion of freedoms.
+#[derive(Debug)]
+struct Free {
+    motion: FreeMotion,
+    /// Its state before it begins, in the file's own coordinates.
+    fresh: FreeState,
+    /// Whether it has begun; freedoms are held on the path otherwise.
+    is_released: bool,
+}
+
+/// The reason for which a mechanism stops.
+#[derive(Clone, Debug)]
+pub enum Stop {
+    /// The path cannot be followed to its end.
+    Blocked(Blocked),
+    /// The free motion cannot go on.
+    Free(Error),
+}
+
+impl Motion {
+    /// Makes the motion of a mechanism at a solver's pose, with its freedoms held. Ropes that are off their
+    /// pulleys there are no news.
+    #[must_use]
+    pub fn new(solver: Solver) -> Self {
+        let mut motion = Self {
+            solution: Solution::new(&solver),
+            solver,
+            free: None,
+            told: Told::default(),
+            has_passed: false,
+            has_stopped: false,
+            watches_contacts: false,
+            ends_at_events: false,
+            knows_contacts: false,
+        };
+        motion.tell_anew();
+        motion
+    }
+
+    /// Prepares the free motion of the mechanism, if it has freedoms, with its derivatives along
+    /// directions.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`FreeMotion::along`].
+    pub fn prepare_freedoms(&mut self, directions: Vec<Direction>) -> Result<(), Error> {
+        let tolerance = self.mechanism().simulation.tolerance;
+        let free = FreeMotion::along(&self.solver, tolerance, directions)?;
+        self.free = free.map(|motion| Free {
+            fresh: motion.state(),
+            motion,
+            is_released: false,
+        });
+        Ok(())
+    }
+
+    /// Returns the mechanism.
+    #[must_use]
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        self.solver.mechanism()
+    }
+
+    /// Returns the pose.
+    #[must_use]
+    pub fn pose(&self) -> &Pose {
+        self.solver.pose()
+    }
+
+    /// Returns the motion of freedoms, if it was [prepared](Self::prepare_freedoms) and there are some.
+    #[must_use]
+    pub fn free(&self) -> Option<&FreeMotion> {
+        self.free.as_ref().map(|free| &free.motion)
+    }
+
+    /// Returns the motion of freedoms, if there are some, with the solver that it moves and the solution.
+    pub fn parts(&mut self) -> Option<(&mut FreeMotion, &mut Solver, &mut Solution)> {
+        let free = self.free.as_mut()?;
+        Some((&mut free.motion, &mut self.solver, &mut self.solution))
+    }
+
+    /// Returns the state of the free motion before it begins, in the file's own coordinates.
+    #[must_use]
+    pub fn fresh(&self) -> Option<&FreeState> {
+        self.free.as_ref().map(|free| &free.fresh)
+    }
+
+    /// Solves forces too, from now on.
+    pub fn seek_forces(&mut self) {
+        self.solution.seek_forces(&self.solver);
+        self.told.lifted =
+            vec![false; self.solution.forces().map_or(0, |forces| forces.contacts())];
+    }
+
+    /// Watches contacts, which tell where they pull though nobody asks for forces. Returns whether there
+    /// are some to watch.
+    pub fn watch_contacts(&mut self) -> bool {
+        let has_dynamics = self.mechanism().has_dynamics();
+        let asks_forces = self.solution.forces().is_some();
+        if asks_forces || !has_dynamics || self.solver.forces().contacts() == 0 {
+            return false;
+        }
+        self.seek_forces();
+        self.watches_contacts = true;
+        true
+    }
+
+    /// Goes to a pose in the file's own coordinates, with the solver's choices there, and holds freedoms.
+    /// Nothing of an earlier motion has been told then.
+    pub fn begin(&mut self, pose: &Pose, choices: &SolverChoices) {
+        if let Some(free) = &mut self.free {
+            let selected = (free.motion).select(&mut self.solver, &mut self.solution, &free.fresh);
+            debug_assert!(selected.is_ok(), "the file's own coordinates");
+            free.is_released = false;
+        }
+        let resumed = self.solver.resume(pose, choices);
+        debug_assert!(resumed, "the choices are those of this mechanism");
+        self.tell_anew();
+    }
+
+    /// Goes to a pose with the solver's choices there and in the coordinates of a free motion there. That
+    /// motion [goes on](Self::resume_free) from its state.
+    pub fn return_to(&mut self, pose: &Pose, choices: &SolverChoices, free: Option<&FreeState>) {
+        if let (Some((motion, solver, solution)), Some(state)) = (self.parts(), free) {
+            let selected = motion.select(solver, solution, state);
+            debug_assert!(selected.is_ok(), "the coordinates were in use");
+        }
+        let resumed = self.solver.resume(pose, choices);
+        debug_assert!(resumed, "the choices are those of this mechanism");
+    }
+
+    /// Goes on with the free motion from a state of it, at the pose that belongs to it.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`FreeMotion::resume`].
+    pub fn resume_free(&mut self, state: &FreeState) -> Result<(), Error> {
+        let Some(free) = &mut self.free else {
+            return Ok(());
+        };
+        free.is_released = true;
+        free.motion.resume(&self.solver, state)
+    }
+
+    /// Lets freedoms, if there are some, move by the forces from the pose on, with the velocities of the
+    /// file.
+    ///
+    /// # Errors
+    ///
+    /// Accelerations do not exist there.
+    pub fn release(&mut self, given: &impl Given) -> Result<(), Error> {
+        if let Some(free) = &mut self.free {
+            // Nothing is left of a motion before, such as the length of its steps.
+            free.motion.resume(&self.solver, &free.fresh)?;
+            free.motion.start(&mut self.solver, given)?;
+            free.is_released = true;
+        }
+        Ok(())
+    }
+
+    /// Gives the solver the usual budget of a step.
+    pub fn renew_budget(&mut self) {
+        let budget = Budget::usual(self.mechanism());
+        self.solver.set_budget(budget);
+    }
+
+    /// Follows a path from the pose to its end, without freedoms that move.
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] if the path cannot be followed to its end; the pose is then the last one reached.
+    pub fn follow(&mut self, path: &Path) -> Result<Progress, Blocked> {
+        self.follow_by(|solver| solver.track(path))
+    }
+
+    /// As [`follow`](Self::follow), by another way of tracking.
+    ///
+    /// # Errors
+    ///
+    /// As [`follow`](Self::follow).
+    #[inline]
+    pub fn follow_by(
+        &mut self,
+        track: impl FnOnce(&mut Solver) -> Result<Progress, Blocked>,
+    ) -> Result<Progress, Blocked> {
+        let followed = track(&mut self.solver);
+        self.arrive(followed.is_ok());
+        followed
+    }
+
+    /// Moves on to a time. Without freedoms that were released the mechanism follows `path`, which ends
+    /// there; otherwise it jumps to the inputs at its time and to the parameters at the end of the path,
+    /// and moves on by the forces with the inputs `given`, to the first event if it
+    /// [ends](Self::end_at_events) there.
+    ///
+    /// # Errors
+    ///
+    /// The reason for which it stops; the mechanism is then at the last pose reached.
+    pub fn advance(&mut self, path: &Path, given: &impl Given, until: f64) -> Result<(), Stop> {
+        let Some(free) = self.free.as_mut().filter(|free| free.is_released) else {
+            return self.follow(path).map(drop).map_err(Stop::Blocked);
+        };
+        let (free, solver, solution) = (&mut free.motion, &mut self.solver, &mut self.solution);
+        let advance = match self.ends_at_events {
+            true => FreeMotion::advance_to_event,
+            false => FreeMotion::advance,
+        };
+        let advanced = free
+            .jump(solver, given, &path.to)
+            .and_then(|()| advance(free, solver, solution, given, until));
+        self.arrive(advanced.is_ok());
+        advanced.map_err(Stop::Free)
+    }
+
+    /// Notes that a path was followed, to its end or not.
+    #[inline]
+    fn arrive(&mut self, reached: bool) {
+        self.has_passed = reached;
+        self.has_stopped = !reached;
+        self.knows_contacts = false;
+    }
+
+    /// Lets the free motion end at its events: [`advance`](Self::advance) may then not reach its time.
+    pub fn end_at_events(&mut self, ends: bool) {
+        self.ends_at_events = ends;
+    }
+
+    /// Takes over the rates of prescribed motions at the pose, and those of a free motion with its passive
+    /// forces.
+    pub fn take_rates(&mut self) {
+        self.solution.follow_motions(&self.solver);
+        if let Some(free) = self.free.as_ref().filter(|free| free.is_released) {
+            free.motion.tell(&mut self.solution);
+        }
+    }
+
+    /// Solves rates and forces at the pose, for the rates of drivers and the loads in the solution.
+    ///
+    /// # Errors
+    ///
+    /// They do not exist at a singular position.
+    pub fn solve(&mut self) -> Result<(), kinematics::Error> {
+        if self.watches_contacts {
+            self.solution.solve_rates(&mut self.solver)?;
+            // Forces may exist at fewer poses than the values that are asked for.
+            let _ = self.solve_forces(ForceParts::REACTIONS);
+            return Ok(());
+        }
+        self.solution.solve(&mut self.solver)?;
+        self.knows_contacts = true;
+        Ok(())
+    }
+
+    /// Solves these parts of the forces at the pose, for the rates there and the loads in the solution.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solution::solve_forces`].
+    pub fn solve_forces(&mut self, parts: ForceParts) -> Result<(), kinematics::Error> {
+        let solved = self.solution.solve_forces(&mut self.solver, parts);
+        self.knows_contacts = parts.reactions && solved.is_ok();
+        solved
+    }
+
+    /// Returns the value of an output \[SI\], not a number for a force unless forces are sought.
+    #[must_use]
+    pub fn value(&self, output: &Output) -> f64 {
+        self.solution.value(&self.solver, output)
+    }
+
+    /// Returns what is worth knowing and was not told yet, in the order in which it came about. The host
+    /// asks after each [advance](Self::advance) and after each [solution](Self::solve).
+    pub fn notices(&mut self) -> impl Iterator<Item = Notice<'_>> {
+        let Self {
+            solver,
+            solution,
+            free,
+            told,
+            ..
+        } = self;
+        let has_passed = std::mem::take(&mut self.has_passed);
+        let approach = match has_passed {
+            true => solver.approach(&mut told.near_singular),
+            false => None,
+        };
+        let solver = &*solver;
+        let (mechanism, pose) = (&**solver.mechanism(), solver.pose());
+        let happenings = happenings(free.as_mut(), mechanism);
+        let crossings = has_passed.then(|| crossings(solver)).into_iter().flatten();
+        let goes_on = !self.has_stopped;
+        let values = mechanism.drivers.iter().zip(&pose.drivers);
+        let values = values.filter(move |_| goes_on);
+        let excursions = values
+            .zip(&mut told.beyond)
+            .filter_map(|((driver, value), beyond)| driver.excursion(*value, pose.time, beyond));
+        let off_pulleys = goes_on.then(|| solver.off_pulleys(&mut told.off_pulleys));
+        let off_pulleys = off_pulleys.into_iter().flatten();
+        let forces = solution.forces().filter(|_| self.knows_contacts);
+        let lift_offs = forces.map(|forces| solver.lift_offs(forces, &mut told.lifted));
+        happenings
+            .chain(approach.map(|approach| Notice::Approach(approach, pose.time)))
+            .chain(crossings)
+            .chain(excursions.map(Notice::Excursion))
+            .chain(off_pulleys.map(Notice::OffPulley))
+            .chain(lift_offs.into_iter().flatten().map(Notice::LiftOff))
+    }
+
+    /// Returns the overlaps and events among the [notices](Self::notices).
+    pub fn happenings(&mut self) -> impl Iterator<Item = Notice<'_>> {
+        happenings(self.free.as_mut(), self.solver.mechanism())
+    }
+
+    /// Returns the change points on the path followed last, whether they were told or not.
+    pub fn crossings(&self) -> impl Iterator<Item = Notice<'_>> {
+        crossings(&self.solver)
+    }
+
+    /// Returns what has been told.
+    #[must_use]
+    pub fn told(&self) -> &Told {
+        &self.told
+    }
+
+    /// Takes over what has been told, at a pose to which the motion returns.
+    pub fn set_told(&mut self, told: &Told) {
+        self.told.clone_from(told);
+    }
+
+    /// Forgets what has been told.
+    fn tell_anew(&mut self) {
+        (self.has_passed, self.has_stopped) = (false, false);
+        let mechanism = self.mechanism();
+        self.told = Told {
+            near_singular: false,
+            beyond: vec![false; mechanism.drivers.len()],
+            off_pulleys: vec![false; mechanism.pulleys()],
+            lifted: vec![false; self.told.lifted.len()],
+        };
+        // Those at the start are told with the mechanism.
+        self.solver.off_pulleys(&mut self.told.off_pulleys).count();
+    }
+
+    /// Returns the directions at the pose: those of a free motion have changed with it.
+    ///
+    /// # Errors
+    ///
+    /// They do not exist, as at a singular position.
+    pub fn directions<'a>(&mut self, own: &'a [Direction]) -> Result<Cow<'a, [Direction]>, Error> {
+        let Some((free, solver, solution)) = self.parts() else {
+            return Ok(Cow::Borrowed(own));
+        };
+        let varied = free.varied(solver, solution);
+        varied.map(Cow::Owned)
+    }
+
+    /// Moves to the stable equilibrium downhill; see [`FreeMotion::balance`].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoFreedom`] without freedoms, and those of [`FreeMotion::balance`].
+    pub fn balance(&mut self, given: &impl Given) -> Result<Equilibrium, Error> {
+        let (free, solver, solution) = self.parts().ok_or(Error::NoFreedom)?;
+        free.balance(solver, solution, given)
+    }
+
+    /// Finds the stable equilibria downhill from places all over the range of the freedoms; see
+    /// [`FreeMotion::balances`].
+    ///
+    /// # Errors
+    ///
+    /// As [`balance`](Self::balance).
+    pub fn balances(&mut self, given: &impl Given) -> Result<Vec<Equilibrium>, Error> {
+        let (free, solver, solution) = self.parts().ok_or(Error::NoFreedom)?;
+        free.balances(solver, solution, given)
+    }
+
+    /// Linearizes the motion at the pose, for the rates and loads in the solution; see
+    /// [`FreeMotion::linearize`].
+    ///
+    /// # Errors
+    ///
+    /// As [`balance`](Self::balance).
+    pub fn linearize(&mut self, outputs: &[Output]) -> Result<StateSpace, Error> {
+        let (free, solver, solution) = self.parts().ok_or(Error::NoFreedom)?;
+        free.linearize(solver, solution, outputs)
+    }
+}
+
+/// Returns the overlaps and events of which nobody has read.
+fn happenings<'a>(
+    free: Option<&'a mut Free>,
+    mechanism: &'a Mechanism,
+) -> impl Iterator<Item = Notice<'a>> {
+    free.into_iter().flat_map(|free| {
+        let (overlaps, events) = free.motion.news();
+        let overlaps = overlaps.map(|overlap| Notice::Overlap(overlap, mechanism));
+        overlaps.chain(events.map(|event| Notice::Event(event, mechanism)))
+    })
+}
+
+/// Returns the change points on the path that a solver has followed last.
+fn crossings(solver: &Solver) -> impl Iterator<Item = Notice<'_>> {
+    let time = solver.pose().time;
+    let crossed = solver.crossed().iter();
+    crossed.map(move |crossing| Notice::Crossing(crossing, solver, time))
+}
+
+impl Stop {
+    /// Describes what stops a mechanism, when, and at which values of the moving drivers: those with a
+    /// prescribed motion and those that are `fed`.
+    #[must_use]
+    pub fn describe(&self, motion: &Motion, fed: impl Fn(DriverId) -> bool) -> String {
+        let (mechanism, pose) = (motion.mechanism(), motion.pose());
+        match self {
+            Self::Blocked(blocked) => {
+                blocked.describe(mechanism, pose, Some(pose.time), |driver| {
+                    mechanism.drivers[driver.index()].motion().is_some() || fed(driver)
+                })
+            }
+            Self::Free(error) => error.to_string(),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! What a mechanism in motion tells: each notice once, whoever moves the mechanism.
+
+use biela::dynamics::{GivenByPath, Motion, Notice};
+use biela::kinematics::{Path, SolverChoices};
+
+use crate::common::{assembled, parse, straight_to};
+
+/// A rope that leaves its pulley where its far end is low, and a driver with a limit above that.
+const LOWERED: &str = r#"
+    format = 1
+    name = "lowered"
+    [ground.markers]
+    track = [0, 0]
+    F = [1, 0]
+    guide = [2, 0, "90*deg"]
+    [bodies]
+    near = { markers = { P = [0, 0] } }
+    far = { markers = { Q = [0, 0, "90*deg"] }, estimate = [2, 0.5, 0] }
+    [joints]
+    track = { type = "translational", markers = ["ground.track", "near.P"] }
+    guide = { type = "translational", markers = ["ground.guide", "far.Q"] }
+    rope = { type = "rope", markers = ["near.P", { marker = "ground.F", radius = 0.1, side = "left" }, "far.Q"], length = 2.1 }
+    [drivers]
+    height = { coordinate = "x", markers = ["ground.guide", "far.Q"], start = 0.5, min = -0.2 }
+"#;
+
+fn sentences(motion: &mut Motion) -> Vec<String> {
+    motion.notices().map(|notice| notice.to_string()).collect()
+}
+
+#[test]
+fn limits_and_pulleys_are_told_once_per_excursion_and_anew_after_a_new_start() {
+    let mechanism = parse(LOWERED);
+    let (solver, mut path) = assembled(&mechanism);
+    let home = solver.pose().clone();
+    let mut choices = SolverChoices::default();
+    solver.copy_choices(&mut choices);
+    let mut motion = Motion::new(solver);
+    let (mut is_below, mut is_off) = (false, false);
+    for height in [0.2, -0.15, -0.4, -0.6, 0.1, -0.5, f64::NAN, 0.3, -0.5] {
+        if height.is_nan() {
+            motion.begin(&home, &choices);
+            (is_below, is_off) = (false, false);
+            continue;
+        }
+        straight_to(&motion.solver, &mut path, height);
+        motion.follow(&path).expect("the way is free");
+        let q = &motion.pose().q;
+        let along = (q[3] - q[0]).hypot(q[4]);
+        // The distance of the pulley's centre from the straight rope, positive above it.
+        let leaves = -q[4] * (1.0 - q[0]) / along > 0.1;
+        let mut expected = Vec::new();
+        if height < -0.2 && !is_below {
+            expected.push("driver `height` is at ");
+        }
+        if leaves && !is_off {
+            expected.push("rope `rope` would leave its pulley at `ground.F`");
+        }
+        (is_below, is_off) = (height < -0.2, leaves);
+        let told = sentences(&mut motion);
+        assert_eq!(told.len(), expected.len(), "{height}: {told:?}");
+        let all = told
+            .iter()
+            .zip(&expected)
+            .all(|(told, expected)| told.contains(expected));
+        assert!(all, "{height}: {told:?}");
+        assert!(sentences(&mut motion).is_empty(), "{height}");
+    }
+}
+
+/// A mass that falls by 0.5 m onto a stop, from which it does not bounce.
+const FALLING: &str = r#"
+    format = 1
+    name = "falling"
+    [ground.markers]
+    O = [0, 0, "90*deg"]
+    [bodies.mass]
+    mass = 1
+    inertia = 1
+    markers = { O = [0, 0, "90*deg"] }
+    estimate = [0, 0.5, 0]
+    [joints.guide]
+    type = "translational"
+    markers = ["ground.O", "mass.O"]
+    [freedoms.height]
+    coordinate = "x"
+    markers = ["ground.O", "mass.O"]
+    start = 0.5
+    [stops.bottom]
+    coordinate = "x"
+    markers = ["ground.O", "mass.O"]
+    min = 0
+    [simulation]
+    gravity = [0, -10]
+"#;
+
+#[test]
+fn events_are_told_once_and_only_of_freedoms_that_were_released() {
+    let mechanism = parse(FALLING);
+    let (solver, mut path) = assembled(&mechanism);
+    let mut motion = Motion::new(solver);
+    motion.prepare_freedoms(Vec::new()).expect("a tolerance");
+    let advance = |motion: &mut Motion, path: &mut Path, until: f64| {
+        path.start = motion.pose().time;
+        path.duration = until - path.start;
+        let given = GivenByPath {
+            path,
+            load: |_, _| 0.0,
+        };
+        motion
+            .advance(path, &given, until)
+            .expect("nothing stops it");
+    };
+    advance(&mut motion, &mut path, 1.0);
+    let height = motion.pose().drivers[0];
+    assert!((height - 0.5).abs() < 1e-15, "it is held: {height}");
+    assert!(sentences(&mut motion).is_empty());
+    let given = GivenByPath {
+        path: &path,
+        load: |_, _| 0.0,
+    };
+    motion.release(&given).expect("it has a mass");
+    advance(&mut motion, &mut path, 1.3);
+    assert!(sentences(&mut motion).is_empty(), "it falls");
+    advance(&mut motion, &mut path, 1.4);
+    // It falls for sqrt(2 h/g), to the tolerance of integration, 1e-8 or less.
+    let landing = 1.0 + 0.1_f64.sqrt();
+    let mut events = Vec::new();
+    for notice in motion.notices() {
+        let Notice::Event(event, _) = &notice else {
+            panic!("{notice}")
+        };
+        assert!((event.time - landing).abs() < 1e-7, "{notice}");
+        events.push(notice.to_string());
+    }
+    assert!(events[0].contains("at stop `bottom`"), "{events:?}");
+    assert!(sentences(&mut motion).is_empty());
+}
