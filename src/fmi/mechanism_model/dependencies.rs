@@ -395,8 +395,9 @@ impl MechanismModel {
         value_reference: u32,
         initializing: bool,
     ) -> Vec<(u32, DependencyKind)> {
-        let own = self.free.as_ref().map(|free| free.own(&self.solver));
-        let structure = own.unwrap_or(&self.solver).structure();
+        let solver = &self.motion.solver;
+        let own = self.motion.free().map(|free| free.own(solver));
+        let structure = own.unwrap_or(solver).structure();
         let table = DependencyTable::new(&self.mechanism, structure, &self.variables);
         let variable = &self.variables[place(value_reference)];
         let mut known = table.of(variable.quantity).unwrap_or_default();

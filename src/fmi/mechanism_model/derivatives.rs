@@ -31,7 +31,7 @@ impl MechanismModel {
         // Also after outputs at other points.
         self.solve_freedoms()?;
         let mut direction = Direction::zero(&self.mechanism);
-        let mut loads = vec![0.0; self.solution.loads.len()];
+        let mut loads = vec![0.0; self.motion.solution.loads.len()];
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
@@ -67,7 +67,8 @@ impl MechanismModel {
         };
         let of_forces = if unknowns.iter().any(uses_forces) {
             self.set_loads();
-            let changes = (self.solution).force_changes(&mut self.solver, &direction, &loads);
+            let changes =
+                (self.motion.solution).force_changes(&mut self.motion.solver, &direction, &loads);
             changes.map_err(without_value)?
         } else {
             None
@@ -76,10 +77,13 @@ impl MechanismModel {
             rates,
             driver_rates,
             ..
-        } = &self.solution;
-        let sensitivity = self.solver.sensitivity(rates, driver_rates, &direction);
+        } = &self.motion.solution;
+        let sensitivity = self
+            .motion
+            .solver
+            .sensitivity(rates, driver_rates, &direction);
         let sensitivity = sensitivity.map_err(without_value)?;
-        let forces = self.solution.forces().zip(of_forces.as_ref());
+        let forces = self.motion.solution.forces().zip(of_forces.as_ref());
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Parameter(parameter) => Some(sensitivity.parameter(parameter))
                 .filter(|change| change.is_finite())
@@ -98,10 +102,10 @@ impl MechanismModel {
         direction: &mut Direction,
         loads: &mut [f64],
     ) -> Result<(), Failure> {
-        let Some(free) = &mut self.free else {
+        let Some((free, solver, solution)) = self.motion.parts() else {
             return Ok(());
         };
-        let completed = free.complete(&mut self.solver, &self.solution.rates, direction, loads);
+        let completed = free.complete(solver, &solution.rates, direction, loads);
         completed.map_err(without_value)
     }
 

@@ -6,40 +6,17 @@
 use super::force_input::ForceInput;
 use super::input::DriverInput;
 use super::{Course, MechanismModel, failed, without_value};
-use crate::dynamics::{FreeMotion, Given};
+use crate::dynamics::{FreeMotion, Given, GivenByPath, Stop};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::kinematics::{Curve, Path};
-use crate::mechanism::{DriverId, Jet, Order};
+use crate::kinematics::Path;
+use crate::mechanism::{DriverId, Order};
 
-/// The inputs in force during a step, or a part of one. What jumps does so at the start.
-struct StepInputs<'a> {
-    path: &'a Path,
-    forces: &'a [ForceInput],
-}
-
-impl Given for StepInputs<'_> {
-    fn driver(&self, driver: DriverId, time: f64) -> Jet {
-        let tau = time - self.path.start;
-        match self.path.curves[driver.index()] {
-            Curve::Input {
-                position,
-                velocity,
-                acceleration,
-                ..
-            } => Jet::new(
-                position + tau * (velocity + 0.5 * tau * acceleration),
-                [velocity + tau * acceleration, acceleration],
-            ),
-            Curve::Motion | Curve::Polynomial(_) => unreachable!("an input has a parabola"),
-        }
-    }
-
-    fn loads(&self, time: f64, loads: &mut [f64]) {
-        let tau = time - self.path.start;
-        for (load, input) in loads.iter_mut().zip(self.forces) {
-            *load = input.after(tau);
-        }
+/// Returns the inputs in force during a step, or a part of one.
+fn given<'a>(path: &'a Path, forces: &'a [ForceInput]) -> impl Given + Copy + 'a {
+    GivenByPath {
+        path,
+        load: |input: usize, tau| forces[input].after(tau),
     }
 }
 
@@ -107,7 +84,7 @@ impl MechanismModel {
 
     /// Commits the pose at which the integrator has stopped.
     fn stop_free(&mut self, start: f64, h: f64) {
-        let time = self.solver.pose().time;
+        let time = self.motion.solver.pose().time;
         let s = if h > 0.0 { (time - start) / h } else { 0.0 };
         self.set_driver_rates(start, h, s);
         self.advance_forces(time - start);
@@ -119,45 +96,34 @@ impl MechanismModel {
     /// if it can.
     fn integrate(&mut self, end: f64, stays: bool, log: &Logger) -> Result<(), Failure> {
         let Self {
-            free: Some(free),
-            solver,
-            solution,
+            motion,
             path,
             course,
-            ends_at_events,
             ..
-        } = self
-        else {
+        } = self;
+        let Some(state) = &mut course.free else {
             return Ok(());
         };
-        let state = course.free.as_mut().expect("made with the motion");
-        let given = StepInputs {
-            path,
-            forces: &course.force_inputs,
-        };
-        let advance = match ends_at_events {
-            true => FreeMotion::advance_to_event,
-            false => FreeMotion::advance,
-        };
+        let given = given(path, &course.force_inputs);
         let steps = state.integrator.statistics.accepted;
-        let moved = free
-            .resume(solver, state)
-            .and_then(|()| free.jump(solver, &given, &path.to))
-            .and_then(|()| advance(free, solver, solution, &given, end));
-        if stays && let Err(error) = &moved {
-            free.events().for_each(drop);
-            return Err(Failure::Discarded(self.describe_stop(error)));
+        let resumed = motion.resume_free(state).map_err(Stop::Free);
+        let moved = resumed.and_then(|()| motion.advance(path, &given, end));
+        let moved = moved.map_err(|stop| self.describe_stop(&stop));
+        if stays && let Err(why) = moved {
+            self.motion.happenings().for_each(drop);
+            return Err(Failure::Discarded(why));
         }
-        free.save(state);
+        self.save_free();
+        let Some(state) = &self.course.free else {
+            return Ok(());
+        };
         let reached = state.integrator.t;
-        let taken = free.statistics().accepted.wrapping_sub(steps);
-        let progress = &mut course.path_progress.substeps;
+        let taken = state.integrator.statistics.accepted.wrapping_sub(steps);
+        let progress = &mut self.course.path_progress.substeps;
         *progress = progress.saturating_add(u32::try_from(taken).unwrap_or(u32::MAX));
         self.note_states();
-        self.log_crossings(log);
-        self.log_events(log);
-        self.report_overlaps(log);
-        moved.map_err(|error| Failure::Discarded(self.describe_stop(&error)))?;
+        self.report_happenings(log);
+        moved.map_err(Failure::Discarded)?;
         match reached < end {
             true => Err(Failure::Event),
             false => Ok(()),
@@ -189,48 +155,43 @@ impl MechanismModel {
 
     /// Returns whether stops or friction act on freedoms.
     fn has_passive_forces(&self) -> bool {
-        (self.free.as_ref()).is_some_and(FreeMotion::has_passive_forces)
+        (self.motion.free()).is_some_and(FreeMotion::has_passive_forces)
     }
 
     /// Takes the committed pose and the states that the host has set for those of the motion, which goes
     /// on, or `starts`.
     fn settle(&mut self, starts: bool) -> Result<(), Failure> {
-        if self.free.is_none() {
+        if self.motion.free().is_none() {
             return Ok(());
         }
         self.set_path(self.course.time, 0.0);
         let Self {
-            free: Some(free),
-            solver,
+            motion,
             path,
             course,
             ..
-        } = self
-        else {
-            return Ok(());
-        };
-        let given = StepInputs {
-            path,
-            forces: &course.force_inputs,
-        };
+        } = self;
+        let given = given(path, &course.force_inputs);
         let velocity = |freedom: DriverId| course.inputs[freedom.index()].get(Order::Velocity);
-        let state = course.free.as_mut().expect("made with the motion");
         // Nothing is left of a run before a reset, such as the length of its steps.
-        free.resume(solver, state)
-            .and_then(|()| match starts {
+        if let Some(state) = &course.free {
+            motion.resume_free(state).map_err(failed)?;
+        }
+        if let Some((free, solver, _)) = motion.parts() {
+            let settled = match starts {
                 true => free.restart(solver, &given, velocity),
                 false => free.go_on_with(solver, &given, velocity),
-            })
-            .map_err(failed)?;
-        free.save(state);
+            };
+            settled.map_err(failed)?;
+        }
+        self.save_free();
         Ok(())
     }
 
-    /// Lets the solver be that of the coordinates of the committed pose.
-    pub(super) fn select_coordinates(&mut self) {
-        if let (Some(free), Some(state)) = (&mut self.free, &self.course.free) {
-            let selected = free.select(&mut self.solver, &mut self.solution, state);
-            debug_assert!(selected.is_ok(), "the coordinates were in use");
+    /// Notes the state of the free motion.
+    fn save_free(&mut self) {
+        if let (Some(free), Some(state)) = (self.motion.free(), &mut self.course.free) {
+            free.save(state);
         }
     }
 
@@ -239,7 +200,7 @@ impl MechanismModel {
     pub(super) fn wants_exchange(&mut self) -> bool {
         self.has_local_states
             && self.solve_freedoms().is_ok()
-            && (self.free.as_mut()).is_some_and(|free| free.wants_exchange(&self.solver))
+            && (self.motion.parts()).is_some_and(|(free, solver, _)| free.wants_exchange(solver))
     }
 
     /// Goes on from the committed pose in the coordinates that are best there, if those in use are
@@ -253,27 +214,15 @@ impl MechanismModel {
             return Ok(false);
         }
         self.set_path(self.course.time, 0.0);
-        let Self {
-            free: Some(free),
-            solver,
-            solution,
-            path,
-            course,
-            ..
-        } = self
-        else {
+        let given = given(&self.path, &self.course.force_inputs);
+        let Some((free, solver, solution)) = self.motion.parts() else {
             return Ok(false);
-        };
-        let given = StepInputs {
-            path,
-            forces: &course.force_inputs,
         };
         let exchanged = free.exchange(solver, solution, &given);
         if matches!(exchanged, Ok(false)) {
             return Ok(false);
         }
-        let state = course.free.as_mut().expect("made with the motion");
-        free.save(state);
+        self.save_free();
         self.note_states();
         self.set_driver_rates(self.course.time, 0.0, 0.0);
         self.commit_pose();
@@ -284,7 +233,7 @@ impl MechanismModel {
     pub(super) fn wants_projection(&mut self) -> bool {
         self.has_passive_forces()
             && self.solve_freedoms().is_ok()
-            && self.free.as_ref().is_some_and(FreeMotion::has_drifted)
+            && self.motion.free().is_some_and(FreeMotion::has_drifted)
     }
 
     /// Lets contacts bounce or rest, and friction stick or slide, at the committed pose. Returns whether
@@ -306,20 +255,20 @@ impl MechanismModel {
         };
         let before = states(&self.course);
         self.settle(false)?;
-        self.log_events(log);
-        if std::mem::take(&mut self.has_jumped) {
-            self.report_overlaps(log);
-        } else if let Some(free) = &mut self.free {
+        if !std::mem::take(&mut self.has_jumped)
+            && let Some((free, ..)) = self.motion.parts()
+        {
             // A host finds the instant of an event as well as it integrates.
             free.overlaps().for_each(drop);
         }
+        self.report_happenings(log);
         self.commit_settled();
         Ok(states(&self.course) != before)
     }
 
     /// Takes values and velocities of the coordinates in use for those that the host gives.
     fn note_states(&mut self) {
-        let (Some(free), pose) = (&self.free, self.solver.pose()) else {
+        let (Some(free), pose) = (self.motion.free(), self.motion.pose()) else {
             return;
         };
         for (freedom, velocity) in free.freedoms().iter().zip(free.velocities()) {
@@ -335,17 +284,10 @@ impl MechanismModel {
     ///
     /// They do not exist.
     pub(super) fn solve_freedoms(&mut self) -> Result<(), Failure> {
-        if self.free.is_none() {
-            return Ok(());
+        if self.motion.free().is_some() {
+            self.set_loads();
         }
-        self.set_loads();
-        let Self {
-            free: Some(free),
-            solver,
-            solution,
-            ..
-        } = self
-        else {
+        let Some((free, solver, solution)) = self.motion.parts() else {
             return Ok(());
         };
         free.solve_accelerations(solver, solution)

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::MechanismModel;
 use super::monitor::Contradiction;
 use super::rule::Source;
-use crate::dynamics::{self, FreeMotion};
+use crate::dynamics::{self, Notice, Stop};
 use crate::fmi::log::{Advice, Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
@@ -22,7 +22,7 @@ impl MechanismModel {
         let (start, h) = (self.path.start, self.path.duration);
         let (limit, s) = match &blocked.reason {
             Reason::Singular(point) => (point.drivers.clone(), point.s),
-            _ => (self.solver.pose().drivers.clone(), blocked.s),
+            _ => (self.motion.solver.pose().drivers.clone(), blocked.s),
         };
         let asked = self.path.drivers_at_end(&self.mechanism);
         let mut parts = Vec::new();
@@ -102,7 +102,11 @@ impl MechanismModel {
     }
 
     /// Describes why the free motion was not followed to the end of the path.
-    pub(super) fn describe_stop(&self, error: &dynamics::Error) -> String {
+    pub(super) fn describe_stop(&self, stop: &Stop) -> String {
+        let error = match stop {
+            Stop::Blocked(blocked) => return self.describe_dead_point(blocked),
+            Stop::Free(error) => error,
+        };
         match error {
             dynamics::Error::Spent { .. } => {
                 let [start, h] = [self.path.start, self.path.duration].map(show_time);
@@ -117,7 +121,7 @@ impl MechanismModel {
     fn may_stop(&self, driver: usize, reason: &Reason) -> bool {
         match reason {
             Reason::Singular(point) => {
-                let structure = self.solver.structure();
+                let structure = self.motion.solver.structure();
                 let moved_by = |column| &structure.dependencies(column).drivers;
                 let mut free = point.free.iter().enumerate();
                 free.any(|(q, motion)| *motion != 0.0 && moved_by(q).contains(&DriverId(driver)))
@@ -131,22 +135,29 @@ impl MechanismModel {
     /// Reports redundant constraints and dimensions that do not fit.
     pub(super) fn report_mechanism(&self, log: &Logger) {
         if log.wants(Category::Warning) {
-            for redundancy in self.solver.redundancies() {
+            for redundancy in self.motion.solver.redundancies() {
                 log.remark(|| redundancy.to_string());
             }
-            for misfit in self.solver.geometry_warnings() {
+            for misfit in self.motion.solver.geometry_warnings() {
                 log.remark(|| misfit.to_string());
             }
         }
     }
 
-    /// Reports each approach to a singular position once.
-    pub(super) fn report_approach(&mut self, log: &Logger) {
-        if let Some(approach) = self.solver.approach(&mut self.course.near_singular) {
-            let time = show_time(self.course.time);
-            log.advise(Advice::SingularPosition, || {
-                format!("t = {time} s: {approach}")
-            });
+    /// Reports what is worth knowing of the motion and was not told yet.
+    pub(super) fn report(&mut self, log: &Logger) {
+        (self.motion.notices()).for_each(|notice| report(&notice, log));
+    }
+
+    /// Reports overlaps and events of the free motion.
+    pub(super) fn report_happenings(&mut self, log: &Logger) {
+        (self.motion.happenings()).for_each(|notice| report(&notice, log));
+    }
+
+    /// Reports the change points on the last path.
+    pub(super) fn report_crossings(&self, log: &Logger) {
+        if self.course.path_progress.crossings > 0 {
+            (self.motion.crossings()).for_each(|notice| report(&notice, log));
         }
     }
 
@@ -183,35 +194,8 @@ impl MechanismModel {
         }
     }
 
-    /// Reports to a host that wants messages what a step from `start` brought about, before the step
-    /// is recorded.
-    #[inline(never)]
-    pub(super) fn report_step(&mut self, start: f64, log: &Logger) {
-        self.report_sources(start, log);
-        self.report_contacts(log);
-        self.log_crossings(log);
-        self.log_effort(log);
-    }
-
-    /// Reports excursions of drivers beyond their limits at `time`, and ropes that leave their pulleys.
-    pub(super) fn report_excursions(&mut self, time: f64, log: &Logger) {
-        let values = &self.solver.pose().drivers;
-        let monitors = self.course.monitors.iter_mut().zip(values);
-        for (driver, (monitor, value)) in self.mechanism.drivers.iter().zip(monitors) {
-            if let Some(excursion) = driver.excursion(*value, time, &mut monitor.beyond) {
-                log.advise(Advice::Limits, || excursion.to_string());
-            }
-        }
-        if !log.wants(Category::Warning) {
-            return;
-        }
-        for left in self.solver.off_pulleys(&mut self.course.off_pulleys) {
-            log.remark(|| left.to_string());
-        }
-    }
-
     /// Logs rates that come from another source than in the step before.
-    fn report_sources(&self, start: f64, log: &Logger) {
+    pub(super) fn report_sources(&self, start: f64, log: &Logger) {
         if self.rule().rates != RateSource::Auto || !log.wants(Category::Events) {
             return;
         }
@@ -226,34 +210,6 @@ impl MechanismModel {
         }
     }
 
-    /// Logs the change points on the last path.
-    pub(super) fn log_crossings(&self, log: &Logger) {
-        if self.course.path_progress.crossings > 0 && log.wants(Category::Events) {
-            for crossing in self.solver.crossed() {
-                let message = self.solver.describe_crossing(crossing);
-                log.write(Status::Ok, Category::Events, &message);
-            }
-        }
-    }
-
-    /// Logs the events of a free motion.
-    pub(super) fn log_events(&mut self, log: &Logger) {
-        let events = self.free.iter_mut().flat_map(FreeMotion::events);
-        for event in events {
-            if log.wants(Category::Events) {
-                let message = event.describe(&self.mechanism);
-                log.write(Status::Ok, Category::Events, &message);
-            }
-        }
-    }
-
-    /// Advises of parts that overlapped, where inputs or parameters had jumped.
-    pub(super) fn report_overlaps(&mut self, log: &Logger) {
-        for overlap in self.free.iter_mut().flat_map(FreeMotion::overlaps) {
-            log.advise(Advice::Overlap, || overlap.describe(&self.mechanism));
-        }
-    }
-
     /// Advises of parts that overlap at the start, and logs impacts there: those of the file's start, if the
     /// host has set no other one.
     pub(super) fn report_start(&mut self, log: &Logger) {
@@ -264,20 +220,19 @@ impl MechanismModel {
             !driver.is_free() || velocity.to_bits() == driver.start_velocity().to_bits()
         });
         if start.drivers == own.drivers && start.parameters == own.parameters && keeps_velocities {
+            let mechanism = &*self.mechanism;
             for overlap in &self.overlaps {
-                log.advise(Advice::Overlap, || overlap.describe(&self.mechanism));
+                report(&Notice::Overlap(overlap.clone(), mechanism), log);
             }
-            for impact in self.impacts.iter().filter(|_| log.wants(Category::Events)) {
-                let message = impact.describe(&self.mechanism);
-                log.write(Status::Ok, Category::Events, &message);
+            for impact in &self.impacts {
+                report(&Notice::Event(*impact, mechanism), log);
             }
         }
-        self.report_overlaps(log);
-        self.log_events(log);
+        self.report_happenings(log);
     }
 
     /// Logs the effort of a step.
-    fn log_effort(&self, log: &Logger) {
+    pub(super) fn log_effort(&self, log: &Logger) {
         if log.wants(Category::Solver) {
             let Progress {
                 iterations,
@@ -292,9 +247,25 @@ impl MechanismModel {
             let message = format!(
                 "t = {} s: sub-steps {substeps}{checked}, iterations {iterations}, residual {:.1e}",
                 show_time(self.course.time),
-                self.solver.residual()
+                self.motion.solver.residual()
             );
             log.write(Status::Ok, Category::Solver, &message);
+        }
+    }
+}
+
+/// Tells the host a notice: as advice on wrong use, as a remark, or among the events.
+fn report(notice: &Notice<'_>, log: &Logger) {
+    let text = || notice.to_string();
+    match notice {
+        Notice::Approach(..) => log.advise(Advice::SingularPosition, text),
+        Notice::Excursion(_) => log.advise(Advice::Limits, text),
+        Notice::Overlap(..) => log.advise(Advice::Overlap, text),
+        Notice::OffPulley(_) | Notice::LiftOff(_) => log.remark(text),
+        Notice::Event(..) | Notice::Crossing(..) => {
+            if log.wants(Category::Events) {
+                log.write(Status::Ok, Category::Events, &text());
+            }
         }
     }
 }

@@ -57,10 +57,9 @@ use super::model::{Groups, Model, StateChange};
 use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
-use crate::dynamics::{Event, FreeMotion, FreeState, KeptStart, Overlap};
+use crate::dynamics::{Event, FreeState, KeptStart, Motion, Overlap};
 use crate::kinematics::{
-    self, Budget, Forces, OutputSource, Path, Pose, Progress, Solution, Solver, SolverChoices,
-    offer_start,
+    self, Budget, OutputSource, Path, Pose, Progress, Solver, SolverChoices, offer_start,
 };
 use crate::mechanism::{
     Driver, DriverId, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource, Signal,
@@ -83,7 +82,9 @@ pub struct MechanismModel {
     guid: String,
     interface: Interface,
     variables: Vec<Variable<Quantity>>,
-    solver: Solver,
+    /// The mechanism in motion, with rates and forces at its pose; the values of the drivers' rates have no
+    /// meaning.
+    motion: Motion,
     /// Pose of the file's own values, where its motion [begins](KeptStart), and the solver's choices there.
     file_pose: Arc<Pose>,
     file_choices: SolverChoices,
@@ -91,22 +92,14 @@ pub struct MechanismModel {
     overlaps: Vec<Overlap>,
     impacts: Vec<Event>,
     course: Course,
-    /// Rates and forces at the solver's pose; the values of the drivers' rates have no meaning.
-    solution: Solution,
     reals: Reals,
     path: Path,
-    /// The motion of freedoms, if the mechanism has some.
-    free: Option<FreeMotion>,
     /// Whether the states are those of coordinates that are exchanged.
     has_local_states: bool,
-    /// Its state at the file's own values.
-    file_free: Option<FreeState>,
     /// The step that is being taken in parts.
     parts: Option<Box<Parts>>,
     /// Time of the dead point in front of which the last step has stopped.
     dead_point: Option<f64>,
-    /// Whether steps end at events of free motion.
-    ends_at_events: bool,
     /// Whether inputs or parameters have jumped at the last commit.
     has_jumped: bool,
 }
@@ -142,14 +135,8 @@ struct Course {
     force_inputs: Vec<ForceInput>,
     /// The motion of freedoms at the committed pose.
     free: Option<FreeState>,
-    /// Whether each contact pulled at the last communication point.
-    lifted: Vec<bool>,
-    /// Whether a rope has left each pulley.
-    off_pulleys: Vec<bool>,
     /// Observations per driver.
     monitors: Vec<Monitor>,
-    /// Whether the host has been warned of the singular position nearby.
-    near_singular: bool,
     /// Effort of the last path.
     path_progress: Progress,
     /// Effort of the last step or, in model exchange, up to the last event.
@@ -160,13 +147,11 @@ impl Course {
     /// Returns the course of a mechanism that begins at a pose with the solver's choices there.
     fn new(
         mechanism: &Mechanism,
-        solution: &Solution,
         start: &Arc<Pose>,
         choices: &SolverChoices,
         free: Option<FreeState>,
     ) -> Self {
         let drivers = mechanism.drivers.len();
-        let contacts = solution.forces().map_or(0, Forces::contacts);
         let inputs = mechanism.drivers.iter().map(start_input);
         Self {
             time: start.time,
@@ -186,10 +171,7 @@ impl Course {
             inputs: inputs.collect(),
             force_inputs: vec![ForceInput::default(); mechanism.force_inputs().len()],
             free,
-            lifted: vec![false; contacts],
-            off_pulleys: vec![false; mechanism.pulleys()],
             monitors: vec![Monitor::default(); drivers],
-            near_singular: false,
             path_progress: Progress::default(),
             progress: Progress::default(),
         }
@@ -243,36 +225,34 @@ impl MechanismModel {
         let file_pose = Arc::new(solver.pose().clone());
         let mut file_choices = SolverChoices::default();
         solver.copy_choices(&mut file_choices);
-        let mut solution = Solution::new(&solver);
-        solution.driver_rates.fill(Jet::constant(0.0));
+        let mut motion = Motion::new(solver);
+        motion.solution.driver_rates.fill(Jet::constant(0.0));
         if mechanism.has_dynamics() {
-            solution.seek_forces(&solver);
+            motion.seek_forces();
         }
-        let tolerance = mechanism.simulation.tolerance;
-        // The reader admits no tolerance that the integrator refuses.
-        let free = FreeMotion::new(&solver, tolerance).unwrap_or_default();
+        let prepared = motion.prepare_freedoms(Vec::new());
+        debug_assert!(
+            prepared.is_ok(),
+            "the reader admits no tolerance that the integrator refuses"
+        );
         let variables = variables_of(&mechanism, decisions);
-        let free_state = free.as_ref().map(FreeMotion::state);
+        let free = motion.fresh().cloned();
         Ok(Self {
             guid: guid_decided(&mechanism, decisions),
             interface,
             reals: Reals::new(&mechanism, &variables),
             variables,
-            course: Course::new(&mechanism, &solution, &file_pose, &file_choices, free_state),
-            solution,
-            file_free: free.as_ref().map(FreeMotion::state),
-            free,
+            course: Course::new(&mechanism, &file_pose, &file_choices, free),
+            motion,
             has_local_states: decisions.has_local_states,
             file_choices,
             path,
             parts: None,
             dead_point: None,
-            ends_at_events: false,
             has_jumped: false,
             file_pose,
             overlaps,
             impacts,
-            solver,
             mechanism,
         })
     }
@@ -311,7 +291,7 @@ impl MechanismModel {
     /// Sets an input of a force, on which no pose depends.
     fn set_force_input(&mut self, place: usize, value: f64) {
         self.course.force_inputs[place].set(value);
-        if self.free.is_some() {
+        if self.motion.free().is_some() {
             self.set_freshness(self.course.freshness.min(Freshness::Pose));
         }
         self.reals.invalidate();
@@ -370,7 +350,7 @@ impl Model for MechanismModel {
     }
 
     fn set_tolerance(&mut self, tolerance: f64, log: &Logger) {
-        let (Some(free), Some(state)) = (&mut self.free, &mut self.course.free) else {
+        let (Some((free, ..)), Some(state)) = (self.motion.parts(), &mut self.course.free) else {
             return;
         };
         match free.set_tolerance(tolerance) {
@@ -384,10 +364,10 @@ impl Model for MechanismModel {
 
     fn reset(&mut self) {
         let (start, choices) = (&self.file_pose, &self.file_choices);
-        let free = self.file_free.clone();
-        self.course = Course::new(&self.mechanism, &self.solution, start, choices, free);
-        self.return_to_committed();
-        self.solution.driver_rates.fill(Jet::constant(0.0));
+        let free = self.motion.fresh().cloned();
+        self.course = Course::new(&self.mechanism, start, choices, free);
+        self.motion.begin(start, choices);
+        self.motion.solution.driver_rates.fill(Jet::constant(0.0));
         self.reals.invalidate();
         self.parts = None;
     }
@@ -477,7 +457,7 @@ impl Model for MechanismModel {
     fn nominal(&self, quantity: Quantity) -> f64 {
         let mechanism = match quantity {
             Quantity::Output(_) => &self.mechanism,
-            _ => self.solver.mechanism(),
+            _ => self.motion.solver.mechanism(),
         };
         let (Quantity::Output(OutputSource::Signal(Signal::Motion(driver), _))
         | Quantity::State(driver, _)) = quantity
@@ -487,7 +467,7 @@ impl Model for MechanismModel {
         if mechanism.drivers[driver.index()].coordinate.kind.is_angle() {
             1.0
         } else {
-            rounded(self.solver.size(), 1)
+            rounded(self.motion.solver.size(), 1)
         }
     }
 
@@ -533,7 +513,7 @@ impl Model for MechanismModel {
     }
 
     fn end_steps_at_events(&mut self, end: bool) {
-        self.ends_at_events = end;
+        self.motion.end_at_events(end);
     }
 
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {

@@ -1,4 +1,4 @@
-//! Observation of one driver: finds what deserves a message, each once.
+//! Observation of one driver's inputs: finds what deserves a message, each once.
 
 use std::f64::consts::PI;
 
@@ -17,8 +17,6 @@ pub(super) struct Monitor {
     contradictions: [u8; 2],
     /// Whether the driver has fallen by more than half a turn within one step.
     fell: bool,
-    /// Whether the driver is beyond its limits.
-    pub(super) beyond: bool,
 }
 
 /// A given rate that contradicts the motion.
@@ -99,12 +97,11 @@ impl Monitor {
             sources,
             contradictions,
             fell,
-            beyond,
         } = self;
         codec.each(sources, |codec, source| codec.one_of(source, &Source::ALL))?;
         let counts = [0, 1, 2, 3, 4, STEPS];
         codec.each(contradictions, |codec, count| codec.one_of(count, &counts))?;
-        codec.each([fell, beyond], Codec::flag)
+        codec.flag(fell)
     }
 }
 

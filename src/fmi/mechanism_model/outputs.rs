@@ -205,9 +205,9 @@ impl MechanismModel {
     /// Fills in the values of bodies. Most hosts read these at every step: no match per value.
     fn fill_bodies(&mut self, groups: Groups) {
         let Reals { values, bodies, .. } = &mut self.reals;
-        let (q, _) = self.solver.pose().q.as_chunks();
-        let (velocities, _) = self.solution.rates.velocity().as_chunks();
-        let (accelerations, _) = self.solution.rates.acceleration().as_chunks();
+        let (q, _) = self.motion.solver.pose().q.as_chunks();
+        let (velocities, _) = self.motion.solution.rates.velocity().as_chunks();
+        let (accelerations, _) = self.motion.solution.rates.acceleration().as_chunks();
         for &BodyPlace { body, first } in bodies.iter() {
             let (to, _) = values[first..first + 9].as_chunks_mut::<3>();
             if groups & BODIES != 0 {
@@ -229,7 +229,7 @@ impl MechanismModel {
             others,
             ..
         } = &mut self.reals;
-        let (solver, solution) = (&mut self.solver, &self.solution);
+        let (solver, solution) = (&mut self.motion.solver, &self.motion.solution);
         let (rates, driver_rates) = (&solution.rates, &solution.driver_rates);
         for SignalPlace { signal, places } in signals.iter() {
             let group = group_of(*signal);
@@ -249,16 +249,19 @@ impl MechanismModel {
             if groups & group == 0 {
                 continue;
             }
+            if let Quantity::EventIndicator(index) = quantity {
+                let free = self.motion.free();
+                values[place] = free.map_or(1.0, |free| free.event_indicator(index));
+                continue;
+            }
+            let (solver, solution) = (&mut self.motion.solver, &self.motion.solution);
+            let (rates, driver_rates) = (&solution.rates, &solution.driver_rates);
             values[place] = match quantity {
                 Quantity::Input(driver, order) => self.course.inputs[driver.index()].get(order),
                 Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.course.parameters[parameter.index()],
                 Quantity::Budget => self.course.budget,
                 Quantity::Time => self.course.time,
-                Quantity::EventIndicator(index) => {
-                    let free = self.free.as_ref();
-                    free.map_or(1.0, |free| free.event_indicator(index))
-                }
                 Quantity::Residual => solver.residual(),
                 Quantity::Rcond => solver.rcond(),
                 Quantity::Iterations => f64::from(self.course.progress.iterations),

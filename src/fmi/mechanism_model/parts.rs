@@ -6,6 +6,7 @@
 //! goes to them at that time, and the path starts anew.
 
 use super::{Course, MechanismModel};
+use crate::dynamics::Told;
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::kinematics::{Curve, Path, Progress};
@@ -21,6 +22,7 @@ pub(super) struct Parts {
     split: bool,
     /// The model's course before the step, and whether the pose belonged to the values set.
     before: Course,
+    told_before: Told,
     was_current: bool,
 }
 
@@ -41,6 +43,7 @@ impl MechanismModel {
             path: self.path.clone(),
             split: false,
             before,
+            told_before: self.motion.told().clone(),
             was_current,
         }));
     }
@@ -103,6 +106,7 @@ impl MechanismModel {
             return;
         };
         self.course = parts.before;
+        self.motion.set_told(&parts.told_before);
         self.stay_at_committed(parts.was_current);
     }
 
@@ -171,15 +175,8 @@ impl MechanismModel {
         self.path.to.copy_from_slice(&whole.to);
         let curves = self.path.curves.iter_mut().zip(&whole.curves);
         for ((curve, whole), now) in curves.zip(&self.course.committed.drivers) {
-            if let Curve::Input {
-                position,
-                velocity,
-                acceleration,
-                ..
-            } = *whole
-            {
-                let position = position + elapsed * (velocity + 0.5 * elapsed * acceleration);
-                *curve = Curve::held(position, *now);
+            if let Some(at) = whole.input_after(elapsed) {
+                *curve = Curve::held(at.value, *now);
             }
         }
         self.follow(log)?;
@@ -204,21 +201,15 @@ impl MechanismModel {
         self.mechanism.derive_parameters(&mut path.to);
         let curves = path.curves.iter_mut().zip(&whole.curves);
         for ((curve, whole_curve), now) in curves.zip(&self.course.committed.drivers) {
-            if let Curve::Input {
-                position,
-                velocity,
-                acceleration,
-                jump,
-            } = *whole_curve
+            if let (Curve::Input { jump, .. }, Some(at)) =
+                (*whole_curve, whole_curve.input_after(s0 * whole.duration))
             {
-                let tau = s0 * whole.duration;
                 // The rest of the jump at the end of the part belongs to the part's polynomial.
-                let position =
-                    position + tau * (velocity + 0.5 * tau * acceleration) + (1.0 - s1) * jump;
+                let position = at.value + (1.0 - s1) * jump;
                 *curve = Curve::Input {
                     position,
-                    velocity: velocity + tau * acceleration,
-                    acceleration,
+                    velocity: at.first(),
+                    acceleration: at.second(),
                     jump: now - position,
                 };
             }
@@ -227,11 +218,11 @@ impl MechanismModel {
 
     /// Follows the path that is set.
     fn follow(&mut self, log: &Logger) -> Result<(), Failure> {
-        if self.free.is_some() {
+        if self.motion.free().is_some() {
             let end = self.path.start + self.path.duration;
             return self.follow_free(end, log);
         }
-        match self.solver.track(&self.path) {
+        match self.motion.follow(&self.path) {
             Ok(progress) => {
                 self.course.path_progress.add(&progress);
                 Ok(())

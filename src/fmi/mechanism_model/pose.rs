@@ -37,11 +37,11 @@ impl MechanismModel {
         }
         let start = self.start_of_step(h, end);
         self.set_path(start, h);
-        if self.free.is_some() {
+        if self.motion.free().is_some() {
             let stayed = stays.then_some(was_current);
             return self.take_free_step(end, stayed, log);
         }
-        match self.solver.track(&self.path) {
+        match self.motion.follow(&self.path) {
             Ok(progress) => {
                 self.report_falls(log);
                 self.course.path_progress = progress;
@@ -79,10 +79,13 @@ impl MechanismModel {
     /// Ends a step of size `h` from `start`, or in model exchange an accepted step of the host:
     /// reports what it brought about, and records the inputs.
     pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
-        self.report_approach(log);
-        self.report_excursions(start + h, log);
         if log.is_on() {
-            self.report_step(start, log);
+            self.solve_contacts(log);
+        }
+        self.report(log);
+        if log.is_on() {
+            self.report_sources(start, log);
+            self.log_effort(log);
         }
         let (rule, interface) = (self.rule(), self.interface);
         let observes_rates = log.wants_advice(Advice::Rates);
@@ -111,7 +114,9 @@ impl MechanismModel {
     /// whether that pose belongs to the values set.
     pub(super) fn note_committed(&mut self) -> bool {
         if self.course.at_committed {
-            self.solver.copy_choices(&mut self.course.committed_choices);
+            self.motion
+                .solver
+                .copy_choices(&mut self.course.committed_choices);
         }
         self.course.at_committed && self.course.freshness != Freshness::Stale
     }
@@ -119,7 +124,7 @@ impl MechanismModel {
     /// Returns to the committed pose as [`note_committed`](Self::note_committed) found it.
     pub(super) fn stay_at_committed(&mut self, was_current: bool) {
         self.return_to_committed();
-        (self.solution.driver_rates).copy_from_slice(&self.course.committed_rates);
+        (self.motion.solution.driver_rates).copy_from_slice(&self.course.committed_rates);
         self.set_freshness(if was_current {
             Freshness::Pose
         } else {
@@ -132,7 +137,7 @@ impl MechanismModel {
     pub(super) fn set_path(&mut self, start: f64, h: f64) {
         let rule = self.rule();
         // A saturating cast.
-        (self.solver).set_budget(Budget::of(self.course.budget as u32));
+        (self.motion.solver).set_budget(Budget::of(self.course.budget as u32));
         let (path, committed) = (&mut self.path, &self.course.committed);
         path.start = start;
         path.duration = h;
@@ -164,18 +169,18 @@ impl MechanismModel {
                 // Accelerations follow from the forces when they are asked for.
                 DriverSource::Free { .. } => {
                     let velocity = self.course.inputs[index].get(Order::Velocity);
-                    self.solution.driver_rates[index].derivatives = [velocity, 0.0];
+                    self.motion.solution.driver_rates[index].derivatives = [velocity, 0.0];
                 }
                 DriverSource::Input { .. } => {
                     let (rates, sources) =
                         self.course.inputs[index].rates_after(rule, start, s * h);
                     self.course.sources[index] = sources;
                     // A whole number would be copied, which waits for its parts.
-                    self.solution.driver_rates[index].derivatives = rates;
+                    self.motion.solution.driver_rates[index].derivatives = rates;
                 }
                 DriverSource::Motion(_) => {
-                    self.solution.driver_rates[index] =
-                        self.solver.motion(DriverId(index), start + s * h);
+                    self.motion.solution.driver_rates[index] =
+                        self.motion.solver.motion(DriverId(index), start + s * h);
                 }
             }
         }
@@ -190,7 +195,9 @@ impl MechanismModel {
             if !driver.is_given() {
                 continue;
             }
-            let rates = self.solution.driver_rates[index].derivatives.iter_mut();
+            let rates = self.motion.solution.driver_rates[index]
+                .derivatives
+                .iter_mut();
             let last = self.course.committed_rates[index].derivatives;
             for ((rate, last), source) in rates.zip(last).zip(self.course.sources[index]) {
                 if matches!(source, Source::Estimate | Source::Difference) {
@@ -216,7 +223,7 @@ impl MechanismModel {
         if phase == Phase::Event {
             return self.commit_event(log);
         }
-        self.has_jumped = !starting && self.free.is_some() && self.jumps();
+        self.has_jumped = !starting && self.motion.free().is_some() && self.jumps();
         if !starting && self.hosts_freedoms() {
             self.evaluate(false)?;
             self.set_freshness(Freshness::Pose);
@@ -269,33 +276,33 @@ impl MechanismModel {
             }
         }
         self.commit_pose();
-        self.report_approach(log);
-        self.log_crossings(log);
+        self.report(log);
         Ok(())
     }
 
     /// Commits the solver's pose.
     pub(super) fn commit_pose(&mut self) {
         let course = &mut self.course;
-        self.solver.save(&mut course.committed);
-        (course.committed_rates).copy_from_slice(&self.solution.driver_rates);
+        self.motion.solver.save(&mut course.committed);
+        (course.committed_rates).copy_from_slice(&self.motion.solution.driver_rates);
         self.course.at_committed = true;
         self.set_freshness(Freshness::Pose);
     }
 
     /// Puts the solver back to the committed pose, with the choices that it had there.
     pub(super) fn return_to_committed(&mut self) {
-        self.select_coordinates();
         let course = &self.course;
-        let resumed = (self.solver).resume(&course.committed, &course.committed_choices);
-        debug_assert!(resumed, "the choices are the solver's own");
+        let (pose, choices) = (&course.committed, &course.committed_choices);
+        self.motion.return_to(pose, choices, course.free.as_ref());
         self.course.at_committed = true;
     }
 
     /// Lets the solver leave the committed pose: notes its choices, and begins with them.
     fn leave_committed(&mut self) {
         if self.course.at_committed {
-            self.solver.copy_choices(&mut self.course.committed_choices);
+            self.motion
+                .solver
+                .copy_choices(&mut self.course.committed_choices);
         }
         self.return_to_committed();
         self.course.at_committed = false;
@@ -304,7 +311,7 @@ impl MechanismModel {
     /// Restores the committed pose and its rates.
     pub(super) fn restore_committed(&mut self) {
         self.leave_committed();
-        (self.solution.driver_rates).copy_from_slice(&self.course.committed_rates);
+        (self.motion.solution.driver_rates).copy_from_slice(&self.course.committed_rates);
         self.course.at_committed = true;
     }
 
@@ -314,7 +321,7 @@ impl MechanismModel {
         let (start, h) = (self.path.start, self.path.duration);
         self.course.path_progress = blocked.progress;
         self.course.progress = blocked.progress;
-        self.log_crossings(log);
+        self.report_crossings(log);
         // Held inputs and parameters reach their values at the end of the step only. Inputs on a
         // curve of their own have right values up to the dead point.
         let jumped = self.path.moves_parameters()
@@ -384,7 +391,7 @@ impl MechanismModel {
     pub(super) fn refresh_rates(&mut self) -> Result<(), Failure> {
         if self.course.freshness == Freshness::Pose {
             self.solve_freedoms()?;
-            let solved = self.solution.solve_rates(&mut self.solver);
+            let solved = self.motion.solution.solve_rates(&mut self.motion.solver);
             solved.map_err(without_value)?;
             self.course.freshness = Freshness::Rates;
         }
@@ -414,9 +421,9 @@ impl MechanismModel {
         (self.course.committed_choices).clone_from(&self.file_choices);
         self.return_to_committed();
         self.course.at_committed = false;
-        let started = self.solver.start(&start_pose, &self.path);
+        let started = self.motion.solver.start(&start_pose, &self.path);
         self.course.path_progress = started.map_err(failed)?;
-        self.log_crossings(log);
+        self.report_crossings(log);
         self.set_driver_rates(self.course.time, 0.0, 0.0);
         Ok(())
     }
@@ -425,8 +432,8 @@ impl MechanismModel {
     /// lie beyond the end of a curve, the points that it accepts may not.
     fn hosts_freedoms(&self) -> bool {
         self.interface == Interface::ModelExchange
-            && self.free.is_some()
-            && self.solver.has_ends_of_curves()
+            && self.motion.free().is_some()
+            && self.motion.solver.has_ends_of_curves()
     }
 
     /// Finds the pose for values set since the last commit, and commits nothing. A `trial` may lie
@@ -444,12 +451,13 @@ impl MechanismModel {
             Interface::CoSimulation => (now, 0.0),
         };
         self.set_path(start, h);
-        let followed = match trial {
+        let (path, is_free) = (&self.path, self.motion.free().is_some());
+        let followed = self.motion.follow_by(|solver| match trial {
             // Stops act on freedoms by their forces.
-            true => self.solver.track_through_stops(&self.path),
-            false if self.free.is_some() => self.solver.track_past_stops(&self.path, None),
-            false => self.solver.track(&self.path),
-        };
+            true => solver.track_through_stops(path),
+            false if is_free => solver.track_past_stops(path, None),
+            false => solver.track(path),
+        });
         self.set_driver_rates(start, h, 1.0);
         match followed {
             Ok(progress) => {

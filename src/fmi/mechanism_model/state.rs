@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::rule::Source;
 use super::{Course, Freshness, MechanismModel, Quantity};
-use crate::dynamics::{FreeState, Mode, Passive};
+use crate::dynamics::{FreeState, Mode, Passive, Told};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
@@ -24,6 +24,7 @@ pub struct MechanismState {
     /// Its freshness is [`Freshness::Stale`] or [`Freshness::Pose`]: rates follow from the pose.
     course: Course,
     driver_rates: Vec<Jet>,
+    told: Told,
     /// The solver's pose, the committed one or that of values set since, and its choices there.
     present: Pose,
     present_choices: SolverChoices,
@@ -37,17 +38,18 @@ impl MechanismModel {
         }
         self.set_freshness(self.course.freshness.min(Freshness::Pose));
         let mut present_choices = SolverChoices::default();
-        self.solver.copy_choices(&mut present_choices);
+        self.motion.solver.copy_choices(&mut present_choices);
         let course = &mut self.course;
         let present = if course.at_committed {
             course.committed_choices.clone_from(&present_choices);
             course.committed.clone()
         } else {
-            self.solver.pose().clone()
+            self.motion.solver.pose().clone()
         };
         MechanismState {
             course: course.clone(),
-            driver_rates: self.solution.driver_rates.clone(),
+            driver_rates: self.motion.solution.driver_rates.clone(),
+            told: self.motion.told().clone(),
             present,
             present_choices,
         }
@@ -55,10 +57,11 @@ impl MechanismModel {
 
     pub(super) fn restore_state(&mut self, state: &MechanismState) {
         self.course.clone_from(&state.course);
-        (self.solution.driver_rates).copy_from_slice(&state.driver_rates);
-        self.select_coordinates();
-        let resumed = (self.solver).resume(&state.present, &state.present_choices);
-        debug_assert!(resumed, "the choices were checked when the state was read");
+        (self.motion.solution.driver_rates).copy_from_slice(&state.driver_rates);
+        self.motion.set_told(&state.told);
+        let (pose, choices) = (&state.present, &state.present_choices);
+        self.motion
+            .return_to(pose, choices, state.course.free.as_ref());
         self.reals.invalidate();
         self.parts = None;
     }
@@ -82,7 +85,7 @@ impl MechanismModel {
             };
             check_value(variable, value).map_err(|error| error.to_string())?;
         }
-        self.check_free(self.file_free.clone().as_ref())?;
+        self.check_free(self.motion.fresh().cloned().as_ref())?;
         self.check_pose(&state.course.start_pose)?;
         self.check_free(state.course.free.as_ref())?;
         for (pose, choices) in [
@@ -90,7 +93,7 @@ impl MechanismModel {
             (&state.present, &state.present_choices),
         ] {
             self.check_pose(pose)?;
-            if !self.solver.resume(pose, choices) {
+            if !self.motion.solver.resume(pose, choices) {
                 return Err("its choice of equations is none of this mechanism".to_owned());
             }
         }
@@ -103,18 +106,17 @@ impl MechanismModel {
 
     /// Checks that freedoms can be in a state, and lets the solver be that of its coordinates.
     fn check_free(&mut self, state: Option<&FreeState>) -> Result<(), String> {
-        let (Some(free), Some(state)) = (&mut self.free, state) else {
+        let (Some((free, solver, solution)), Some(state)) = (self.motion.parts(), state) else {
             return Ok(());
         };
-        let selected = free.select(&mut self.solver, &mut self.solution, state);
-        selected
-            .and_then(|()| free.resume(&self.solver, state))
+        free.select(solver, solution, state)
+            .and_then(|()| free.resume(solver, state))
             .map_err(|error| error.to_string())
     }
 
     /// Checks that the equations exist at a pose and hold there.
     fn check_pose(&mut self, pose: &Pose) -> Result<(), String> {
-        let system = self.solver.system();
+        let system = self.motion.solver.system();
         let (mut at, mut targets) = (system.configuration(), system.targets());
         system
             .set_parameters(&pose.parameters, &mut at, &mut targets)
@@ -123,11 +125,11 @@ impl MechanismModel {
         let largest = (pose.q.iter().enumerate()).fold(1.0, |largest: f64, (column, q)| {
             largest.max((q / system.column_scale(column, at.size())).abs())
         });
-        if !self.solver.admits_crossings(pose) {
+        if !self.motion.solver.admits_crossings(pose) {
             return Err("its change points do not belong to this mechanism".to_owned());
         }
-        self.solver.restore(pose);
-        let residual = self.solver.residual();
+        self.motion.solver.restore(pose);
+        let residual = self.motion.solver.residual();
         // False for NaN too.
         if residual <= CLOSED * largest {
             Ok(())
@@ -142,9 +144,16 @@ impl MechanismState {
         let Self {
             course,
             driver_rates,
+            told,
             present,
             present_choices,
         } = self;
+        let Told {
+            near_singular,
+            beyond,
+            off_pulleys,
+            lifted,
+        } = told;
         let Course {
             time,
             start_pose,
@@ -160,10 +169,7 @@ impl MechanismState {
             inputs,
             force_inputs,
             free,
-            lifted,
-            off_pulleys,
             monitors,
-            near_singular,
             path_progress,
             progress,
         } = course;
@@ -185,9 +191,10 @@ impl MechanismState {
         codec.one_of(&mut rule.rates, &RateSource::ALL)?;
         codec.one_of(&mut rule.extrapolation, &Extrapolation::ALL)?;
         codec.finite(budget)?;
-        for (input, monitor) in inputs.iter_mut().zip(monitors) {
+        for ((input, monitor), beyond) in inputs.iter_mut().zip(monitors).zip(beyond) {
             input.visit(codec)?;
             monitor.visit(codec)?;
+            codec.flag(beyond)?;
         }
         codec.each(force_inputs, |codec, input| input.visit(codec))?;
         if let Some(free) = free {
