@@ -80,7 +80,7 @@ pub use given::{Given, GivenByPath, on_cubic};
 pub use held::Held;
 pub use linear::StateSpace;
 pub use motion::FreeMotion;
-pub use moving::{Motion, Stop};
+pub use moving::{Motion, MotionState, Stop};
 pub use notice::{Notice, Told};
 pub use overlap::Overlap;
 pub use passive::{Mode, Passive};

@@ -67,6 +67,15 @@ struct Free {
     is_released: bool,
 }
 
+/// A pose of a motion, to which it can return.
+#[derive(Clone, Debug)]
+pub struct MotionState {
+    /// The pose.
+    pub pose: Pose,
+    /// The solver's choices and the free motion there; nothing where freedoms are held.
+    free: Option<(SolverChoices, FreeState)>,
+}
+
 /// The reason for which a mechanism stops.
 #[derive(Clone, Debug)]
 pub enum Stop {
@@ -166,11 +175,8 @@ impl Motion {
     /// Goes to a pose in the file's own coordinates, with the solver's choices there, and holds freedoms.
     /// Nothing of an earlier motion has been told then.
     pub fn begin(&mut self, pose: &Pose, choices: &SolverChoices) {
-        if let Some(free) = &mut self.free {
-            let selected = (free.motion).select(&mut self.solver, &mut self.solution, &free.fresh);
-            debug_assert!(selected.is_ok(), "the file's own coordinates");
-            free.is_released = false;
-        }
+        self.take_own();
+        self.hold();
         let resumed = self.solver.resume(pose, choices);
         debug_assert!(resumed, "the choices are those of this mechanism");
         self.tell_anew();
@@ -207,13 +213,100 @@ impl Motion {
     ///
     /// Accelerations do not exist there.
     pub fn release(&mut self, given: &impl Given) -> Result<(), Error> {
+        let mechanism = Arc::clone(self.mechanism());
+        self.release_with(given, |freedom| {
+            mechanism.drivers[freedom.index()].start_velocity()
+        })
+    }
+
+    /// As [`release`](Self::release), with these velocities of the freedoms.
+    ///
+    /// # Errors
+    ///
+    /// As [`release`](Self::release).
+    pub fn release_with(
+        &mut self,
+        given: &impl Given,
+        velocity: impl Fn(DriverId) -> f64,
+    ) -> Result<(), Error> {
         if let Some(free) = &mut self.free {
             // Nothing is left of a motion before, such as the length of its steps.
             free.motion.resume(&self.solver, &free.fresh)?;
-            free.motion.start(&mut self.solver, given)?;
+            free.motion.restart(&mut self.solver, given, velocity)?;
             free.is_released = true;
         }
         Ok(())
+    }
+
+    /// Returns whether freedoms move by the forces.
+    #[must_use]
+    pub fn is_released(&self) -> bool {
+        self.free.as_ref().is_some_and(|free| free.is_released)
+    }
+
+    /// Holds freedoms, which move along paths as drivers do, until they are [released](Self::release).
+    pub fn hold(&mut self) {
+        if let Some(free) = &mut self.free {
+            free.is_released = false;
+        }
+    }
+
+    /// Takes the solver of the file's own coordinates, which is at any pose then, and holds freedoms if
+    /// others were in use. Returns whether they were.
+    pub fn take_own(&mut self) -> bool {
+        let Some(free) = &mut self.free else {
+            return false;
+        };
+        let is_other = free.motion.charts.current() != free.fresh.coordinates;
+        let selected = (free.motion).select(&mut self.solver, &mut self.solution, &free.fresh);
+        debug_assert!(selected.is_ok(), "the file's own coordinates");
+        free.is_released &= !is_other;
+        is_other
+    }
+
+    /// Returns a copy of the state.
+    #[must_use]
+    pub fn state(&self) -> MotionState {
+        let free = self.free.as_ref().filter(|free| free.is_released);
+        MotionState {
+            pose: self.pose().clone(),
+            free: free.map(|free| {
+                let mut choices = SolverChoices::default();
+                self.solver.copy_choices(&mut choices);
+                (choices, free.motion.state())
+            }),
+        }
+    }
+
+    /// Goes on from a state of the same mechanism; a free motion with the same bits.
+    pub fn resume(&mut self, state: &MotionState) {
+        if let Some((choices, free)) = &state.free {
+            self.return_to(&state.pose, choices, Some(free));
+            let resumed = self.resume_free(free);
+            debug_assert!(resumed.is_ok(), "it was there before");
+            self.take_rates();
+        } else {
+            self.take_own();
+            self.hold();
+            self.solver.restore(&state.pose);
+        }
+    }
+
+    /// Brings the motion of the same mechanism with other forces to where this one is, with the same rates;
+    /// its freedoms are held there.
+    pub fn carry(&self, other: &mut Self) {
+        let free = self.free().map(FreeMotion::state);
+        // Crossings belong to a solver.
+        let mut pose = self.pose().clone();
+        pose.crossings.clear();
+        let mut choices = SolverChoices::default();
+        self.solver.copy_choices(&mut choices);
+        other.return_to(&pose, &choices, free.as_ref());
+        other.hold();
+        let (from, to) = (&self.solution, &mut other.solution);
+        to.driver_rates.clone_from(&from.driver_rates);
+        let common = from.loads.len().min(to.loads.len());
+        to.loads[..common].copy_from_slice(&from.loads[..common]);
     }
 
     /// Gives the solver the usual budget of a step.

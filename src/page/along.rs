@@ -27,13 +27,9 @@ impl Session {
         read: impl Fn(&Self) -> T,
     ) -> (Vec<(f64, T)>, Vec<Event>) {
         let pass = |session: &mut Self| {
-            if let Some(freedoms) = &mut session.freedoms {
-                freedoms.events = Some(Vec::new());
-            }
+            session.events = Some(Vec::new());
             let rows = session.pass(over, samples, &read);
-            let freedoms = session.freedoms.as_mut();
-            let events = freedoms.and_then(|freedoms| freedoms.events.take());
-            (rows, events.unwrap_or_default())
+            (rows, session.events.take().unwrap_or_default())
         };
         match over {
             Over::Time => self.apart(pass),
@@ -61,13 +57,13 @@ impl Session {
                 let below = (0..=last).rev().map(point).filter(|x| *x < value);
                 self.sample(over, below, read, &mut rows);
                 rows.reverse();
-                self.solver.restore(&here);
+                self.motion.solver.restore(&here);
                 let above = (0..=last).map(point).filter(|x| *x >= value);
                 self.sample(over, above, read, &mut rows);
             }
         }
-        if self.freedoms.is_none() {
-            self.solver.restore(&here);
+        if self.motion.free().is_none() {
+            self.motion.solver.restore(&here);
             self.refresh();
         }
         rows
@@ -93,7 +89,7 @@ impl Session {
     fn span(&self) -> [f64; 2] {
         let simulation = &self.mechanism().simulation;
         let [start, stop] = [simulation.start, simulation.stop];
-        if self.freedoms.is_none() {
+        if self.motion.free().is_none() {
             return [start, stop];
         }
         let (first, now) = (self.start.pose.time, self.pose().time);
@@ -124,7 +120,7 @@ impl Session {
                     }
                 }
             }
-            let outcome = if over == Over::Time && self.freedoms.is_some() {
+            let outcome = if over == Over::Time && self.motion.free().is_some() {
                 self.fly(x)
             } else {
                 self.follow(|_| true)

@@ -17,7 +17,7 @@ impl Session {
     /// Finds the other assembly modes for the parameters and drivers in force. Returns their small
     /// pictures, and whether there are no others.
     pub fn assemblies(&mut self) -> Value {
-        let modes = match self.apart_by_hand(|session| session.solver.modes()) {
+        let modes = match self.apart_by_hand(|session| session.motion.solver.modes()) {
             Ok(modes) => modes,
             Err(error) => return json!({ "error": error.to_string() }),
         };
@@ -58,7 +58,7 @@ impl Session {
                 self.adopt(solver);
                 Outcome::Reached
             }
-            Err(error) => Outcome::Refused(Obstacle::of_assembly(&error, &self.solver)),
+            Err(error) => Outcome::Refused(Obstacle::of_assembly(&error, &self.motion.solver)),
         }
     }
 }

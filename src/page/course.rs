@@ -21,7 +21,7 @@ impl Session {
         };
         let point = self.point(body, at);
         let [x, y, _] = self.place_of(body);
-        let rates = self.solution.rates.velocity();
+        let rates = self.motion.solution.rates.velocity();
         let [vx, vy, omega] = [0, 1, 2].map(|k| rates[3 * body.index() + k]);
         let velocity = [vx - omega * (point.y - y), vy + omega * (point.x - x)];
         let known = |v: f64| if self.has_rates { v } else { f64::NAN };

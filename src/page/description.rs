@@ -81,18 +81,21 @@ impl Session {
             }));
         }
         let largest = largest_load(mechanism, &pose.parameters);
-        let loads: Vec<Value> = (mechanism.force_inputs().iter().zip(&self.solution.loads))
-            .map(|(input, load)| {
-                json!({
-                    "name": input.name,
-                    "description": input.description,
-                    "unit": input.unit.name,
-                    "factor": 1.0,
-                    "value": load,
-                    "largest": largest,
-                })
+        let loads: Vec<Value> = (mechanism
+            .force_inputs()
+            .iter()
+            .zip(&self.motion.solution.loads))
+        .map(|(input, load)| {
+            json!({
+                "name": input.name,
+                "description": input.description,
+                "unit": input.unit.name,
+                "factor": 1.0,
+                "value": load,
+                "largest": largest,
             })
-            .collect();
+        })
+        .collect();
         // Prescribed motions have none.
         let range = |range: &Option<DriverRange>| {
             let DriverRange {
@@ -122,12 +125,12 @@ impl Session {
             "parameters": parameters,
             "variables": variables,
             "loads": loads,
-            "is_free": self.freedoms.is_some(),
+            "is_free": self.motion.free().is_some(),
             "energies": energies.as_ref().map_or(&[][..], |energies| energies),
-            "uses_time": mechanism.uses_time() || self.freedoms.is_some(),
+            "uses_time": mechanism.uses_time() || self.motion.free().is_some(),
             "start": mechanism.simulation.start,
             "stop": mechanism.simulation.stop,
-            "has_forces": self.solution.forces().is_some(),
+            "has_forces": self.motion.solution.forces().is_some(),
             "places": self.layout(),
             "ranges": ranges,
         })

@@ -52,7 +52,7 @@ impl Session {
 
     /// Returns the number of joints whose reactions are known.
     fn reactions(&self) -> usize {
-        match self.solution.forces() {
+        match self.motion.solution.forces() {
             Some(_) => self.mechanism().outputs.joints.len(),
             None => 0,
         }
@@ -61,9 +61,9 @@ impl Session {
     /// Writes the numbers of the present pose.
     pub fn write_frame(&mut self, out: &mut Vec<f64>) {
         out.clear();
-        let rcond = self.solver.rcond();
-        let pose = self.solver.pose();
-        out.extend([pose.time, self.solver.residual(), rcond]);
+        let rcond = self.motion.solver.rcond();
+        let pose = self.motion.solver.pose();
+        out.extend([pose.time, self.motion.solver.residual(), rcond]);
         out.push(f64::from(u8::from(self.has_rates)));
         for index in 0..pose.drivers.len() {
             let driver = self.driver(DriverId(index));
@@ -71,10 +71,13 @@ impl Session {
         }
         out.extend_from_slice(&pose.parameters);
         out.extend((0..self.variables()).map(|index| self.variable(index)));
-        if let Some(forces) = self.solution.forces() {
+        if let Some(forces) = self.motion.solution.forces() {
             let none = Rates::new(pose.q.len());
             for &joint in &self.mechanism().outputs.joints {
-                let at = self.solver.marker(self.mechanism().joints[joint].to, &none);
+                let at = self
+                    .motion
+                    .solver
+                    .marker(self.mechanism().joints[joint].to, &none);
                 out.extend(self.picture.place(at.map(|jet| jet.value)));
                 let place = ForcePlace::reaction(self.mechanism(), &pose.parameters, joint);
                 let force = place.value(forces, &pose.q);
@@ -89,7 +92,7 @@ impl Session {
         out.extend(ends.unwrap_or([[f64::NAN; 2]; 2]).as_flattened());
         out.extend(self.traced().as_flattened());
         self.picture.add_places(&pose.q, out);
-        let rates = &self.solution.rates;
+        let rates = &self.motion.solution.rates;
         let rates = [rates.velocity(), rates.acceleration()];
         let first = out.len();
         self.picture.add_rates(&pose.q, rates, out);

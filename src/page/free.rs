@@ -1,19 +1,18 @@
 //! Free motion: time goes on, the hand pulls by a spring, and what the reader sets lets go anew.
 
-use super::freedoms::{Carrier, Moment};
 use super::outcome::{Obstacle, Outcome};
 use super::session::Session;
 use super::spring::{Spring, mobility};
-use crate::dynamics::Error;
-use crate::kinematics::Pose;
+use crate::dynamics::{Error, Given, GivenByPath, Motion, Notice, Stop};
+use crate::kinematics::{Budget, Curve, Path, Pose};
 use crate::mechanism::{BodyId, DriverId, Jet, Signal, show_time};
 
 impl Session {
     /// Returns value, velocity and acceleration of a driver, in the file's own coordinates.
     pub(super) fn driver(&self, driver: DriverId) -> Jet {
-        let Self {
+        let Motion {
             solver, solution, ..
-        } = self;
+        } = &self.motion;
         solver.signal(
             Signal::Motion(driver),
             &solution.rates,
@@ -47,7 +46,7 @@ impl Session {
         }
         if let Some(spring) = &mut self.spring {
             spring.hand = hand;
-            spring.load(&mut self.solution.loads);
+            spring.load(&mut self.motion.solution.loads);
         }
         self.fly_on();
         self.refresh();
@@ -67,13 +66,13 @@ impl Session {
         let point = self.point(body, grip);
         let [x, y, _] = self.place_of(body);
         let arm = [point.x - x, point.y - y];
-        let Some(freedoms) = &self.freedoms else {
+        if self.motion.free().is_none() {
             return Err("nothing moves by forces".to_owned());
-        };
-        let mobility = mobility(&mut self.solver, freedoms, body, arm);
+        }
+        let mobility = mobility(&mut self.motion, body, arm);
         let mobility = mobility.ok_or("no freedom moves this body")?;
         let held = (body, grip, hand);
-        let mut spring = Spring::new(&self.solver, &self.mechanism, mobility, held)?;
+        let mut spring = Spring::new(&self.motion.solver, &self.mechanism, mobility, held)?;
         self.carry_on(&mut spring.other);
         self.spring = Some(spring);
         self.refresh();
@@ -81,14 +80,9 @@ impl Session {
     }
 
     /// Exchanges the mechanism for one with other forces, which goes on from here.
-    fn carry_on(&mut self, other: &mut Carrier) {
-        let Some(freedoms) = &mut self.freedoms else {
-            return;
-        };
-        freedoms.carry(&self.solver, &self.solution, other);
-        std::mem::swap(&mut self.solver, &mut other.solver);
-        std::mem::swap(&mut self.solution, &mut other.solution);
-        std::mem::swap(freedoms, &mut other.freedoms);
+    fn carry_on(&mut self, other: &mut Motion) {
+        self.motion.carry(other);
+        std::mem::swap(&mut self.motion, other);
     }
 
     /// Moves on to a time; before the present one, from where the motion was let go.
@@ -112,52 +106,74 @@ impl Session {
         outcome
     }
 
-    /// Moves on to a time that is not before the present one. Rates are not solved.
+    /// Moves on to a time that is not before the present one, with the inputs as they are now and the
+    /// budget of a step. Rates are not solved.
     pub(super) fn fly(&mut self, time: f64) -> Outcome {
-        let flown = self.release().and_then(|()| {
-            let Self {
-                solver,
-                solution,
-                freedoms: Some(freedoms),
-                ..
-            } = self
-            else {
-                return Ok(());
-            };
-            let flown = freedoms.advance(solver, solution, time);
-            freedoms.motion.tell(solution);
+        let flown = self.release().map_err(Stop::Free).and_then(|()| {
+            self.set_path_on();
+            let loads = self.motion.solution.loads.clone();
+            let given = inputs(&self.path, &loads);
+            self.motion.renew_budget();
+            let flown = self.motion.advance(&self.path, &given, time);
+            self.motion.solver.set_budget(Budget::UNLIMITED);
+            self.motion.take_rates();
             flown
         });
+        for notice in self.motion.happenings() {
+            match notice {
+                Notice::Overlap(overlap, _) => self.overlaps.push(overlap),
+                Notice::Event(event, _) => self.events.iter_mut().for_each(|all| all.push(event)),
+                _ => {}
+            }
+        }
         match flown {
             Ok(()) => Outcome::Reached,
-            Err(error) => Outcome::Stopped(Obstacle::new(error.to_string())),
+            Err(stop) => Outcome::Stopped(Obstacle::new(stop.describe(&self.motion, |_| false))),
+        }
+    }
+
+    /// Prepares the path on which drivers go on from the pose with their rates.
+    fn set_path_on(&mut self) {
+        self.path_here();
+        let rates = &self.motion.solution.driver_rates;
+        for (curve, rates) in self.path.curves.iter_mut().zip(rates) {
+            if let Curve::Input {
+                velocity,
+                acceleration,
+                ..
+            } = curve
+            {
+                [*velocity, *acceleration] = rates.derivatives;
+            }
         }
     }
 
     /// Takes over inputs of forces that have changed. Rates are not solved.
     pub(super) fn fly_on(&mut self) {
-        if self.freedoms.is_some() {
+        if self.motion.free().is_some() {
             // A motion that cannot go on says so when time does.
             self.fly(self.pose().time);
-            self.start = self.here();
+            self.start = self.motion.state();
         }
     }
 
     /// Lets freedoms move by the forces, from the pose on with the rates in force.
     pub(super) fn release(&mut self) -> Result<(), Error> {
-        let Self {
-            solver,
-            solution,
-            freedoms: Some(freedoms),
-            ..
-        } = self
-        else {
+        if self.motion.free().is_none() {
             return Ok(());
-        };
-        let begins = freedoms.release(solver, solution)?;
-        freedoms.motion.tell(solution);
+        }
+        let begins = !self.motion.is_released();
         if begins {
-            self.start = self.here();
+            self.set_path_on();
+            let loads = self.motion.solution.loads.clone();
+            let rates = self.motion.solution.driver_rates.clone();
+            let velocity = |freedom: DriverId| rates[freedom.index()].first();
+            let given = inputs(&self.path, &loads);
+            self.motion.release_with(&given, velocity)?;
+        }
+        self.motion.take_rates();
+        if begins {
+            self.start = self.motion.state();
         }
         Ok(())
     }
@@ -165,37 +181,25 @@ impl Session {
     /// Prepares a move by hand: without a spring, in the file's own coordinates.
     pub(super) fn take(&mut self) {
         self.let_go();
-        if self.freedoms.is_none() {
+        if self.motion.free().is_none() {
             return;
         }
         let mut pose = self.own_pose();
         let rates = (0..pose.drivers.len()).map(|index| self.driver(DriverId(index)));
         let rates: Vec<Jet> = rates.collect();
-        let Self {
-            solver,
-            solution,
-            freedoms: Some(freedoms),
-            ..
-        } = self
-        else {
-            return;
-        };
-        if freedoms.take_own(solver, solution) {
+        if self.motion.take_own() {
             pose.crossings.clear();
-            solver.restore(&pose);
-            solution.driver_rates = rates;
-            freedoms.is_released = false;
+            self.motion.solver.restore(&pose);
+            self.motion.solution.driver_rates = rates;
         }
     }
 
     /// Lets go after a move by hand: of freedoms that `rest`, or with the velocities that they have.
     pub(super) fn release_moved(&mut self, rest: bool) {
-        if let Some(freedoms) = &mut self.freedoms {
-            freedoms.is_released = false;
-            for freedom in freedoms.motion.freedoms() {
-                if rest {
-                    self.solution.driver_rates[freedom.index()] = Jet::constant(0.0);
-                }
+        self.motion.hold();
+        if let Some((free, _, solution)) = self.motion.parts().filter(|_| rest) {
+            for freedom in free.freedoms() {
+                solution.driver_rates[freedom.index()] = Jet::constant(0.0);
             }
         }
         self.refresh();
@@ -204,12 +208,12 @@ impl Session {
     /// Does what moves the mechanism, and returns to where it was. Others than freedoms return by
     /// themselves.
     pub(super) fn apart<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
-        if self.freedoms.is_none() {
+        if self.motion.free().is_none() {
             return act(self);
         }
-        let (here, start) = (self.here(), self.start.clone());
+        let (here, start) = (self.motion.state(), self.start.clone());
         let done = act(self);
-        self.return_to(&here);
+        self.motion.resume(&here);
         self.start = start;
         self.refresh();
         done
@@ -223,20 +227,12 @@ impl Session {
             act(session)
         })
     }
+}
 
-    /// Notes the present state.
-    pub(super) fn here(&self) -> Moment {
-        Moment::of(&self.solver, self.freedoms.as_ref())
-    }
-
-    /// Returns to a state of the same mechanism.
-    pub(super) fn return_to(&mut self, moment: &Moment) {
-        let Self {
-            solver,
-            solution,
-            freedoms,
-            ..
-        } = self;
-        moment.restore(solver, solution, freedoms.as_mut());
+/// Returns the inputs on a path, with forces that stay.
+fn inputs<'a>(path: &'a Path, loads: &'a [f64]) -> impl Given + 'a {
+    GivenByPath {
+        path,
+        load: |input: usize, _| loads[input],
     }
 }

@@ -120,11 +120,11 @@ impl Session {
                     Outcome::Stopped(obstacle) => stop = Some(obstacle),
                     _ => {}
                 }
-                self.solver.restore(&before);
+                self.motion.solver.restore(&before);
                 step.iter_mut().for_each(|step| *step *= 0.5);
             }
             if !nearer {
-                self.solver.restore(&before);
+                self.motion.solver.restore(&before);
                 break;
             }
             if size < LAST {
@@ -157,7 +157,7 @@ impl Session {
                 if let Outcome::Stopped(obstacle) = outcome {
                     stop = obstacle;
                 }
-                self.solver.restore(&before);
+                self.motion.solver.restore(&before);
             }
         }
         Some(stop)
@@ -185,9 +185,10 @@ impl Session {
             Handle::Driver(driver) => {
                 let own = &self.mechanism().drivers[driver.index()];
                 let range = &self.ranges[driver.index()];
-                let width = range
-                    .as_ref()
-                    .map_or_else(|| self.solver.size(), |range| range.ends[1] - range.ends[0]);
+                let width = range.as_ref().map_or_else(
+                    || self.motion.solver.size(),
+                    |range| range.ends[1] - range.ends[0],
+                );
                 if own.coordinate.kind.is_angle() {
                     LARGEST_ANGLE
                 } else if width > 0.0 {
@@ -281,7 +282,7 @@ impl Session {
                 .map(|index| match handle {
                     Handle::Time => match self.mechanism().drivers[index].motion() {
                         Some(Motion::Expression(_) | Motion::Table(_)) => {
-                            self.solver.motion(DriverId(index), self.pose().time)
+                            self.motion.solver.motion(DriverId(index), self.pose().time)
                         }
                         None => Jet::constant(0.0),
                     },
@@ -291,7 +292,7 @@ impl Session {
                     }
                 })
                 .collect();
-            (self.solver)
+            (self.motion.solver)
                 .solve_rates(|driver| jets[driver.index()], &mut rates)
                 .ok()?;
             let of_body = |values: &[f64]| [0, 1, 2].map(|k| values[3 * body.index() + k]);

@@ -13,7 +13,6 @@
 //! | `ranges` | ranges and speeds of the drivers |
 //! | `held` | [`assembled`]: what nothing drives is held by the hand |
 //! | `undo` | states that can be undone |
-//! | `freedoms` | the free motion of a session, and its states |
 //! | `spring` | a spring from the hand to a body |
 //! | `session` | [`Session`]: the mechanism and its moves |
 //! | `description` | names, units and limits, shown once |
@@ -37,7 +36,6 @@ mod edit;
 mod files;
 mod frame;
 mod free;
-mod freedoms;
 mod hand;
 mod held;
 mod host;

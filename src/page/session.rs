@@ -5,7 +5,6 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::edit::{EditError, Place, edit};
-use super::freedoms::{Freedoms, Moment};
 use super::held::assembled;
 use super::outcome::{Obstacle, Outcome};
 use super::ranges::{DriverRange, driver_ranges, start_rates};
@@ -14,9 +13,8 @@ use super::undo::{Kept, UndoHistory};
 use super::values::shown_in;
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
-use crate::kinematics::{
-    Curve, ForceQuantity, Output, OutputSource, Path, Pose, Reason, Solution, Solver,
-};
+use crate::dynamics::{Event, Motion, MotionState, Overlap};
+use crate::kinematics::{Curve, ForceQuantity, Output, OutputSource, Path, Pose, Reason, Solver};
 use crate::mechanism::{
     BodyId, DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source,
     Unit,
@@ -36,19 +34,20 @@ pub struct Session {
     pub(super) mechanism: Arc<Mechanism>,
     /// The mechanism of the file, which is drawn.
     pub(super) own: Arc<Mechanism>,
-    /// Solver of the mechanism; of a free motion, maybe in other coordinates and with a spring.
-    pub(super) solver: Solver,
-    /// The motion of freedoms, if there are some.
-    pub(super) freedoms: Option<Freedoms>,
+    /// The mechanism in motion, maybe with a spring. The rates of drivers that are inputs and the loads are
+    /// the reader's.
+    pub(super) motion: Motion,
+    /// The events of the free motion, while a chart is computed.
+    pub(super) events: Option<Vec<Event>>,
+    /// Parts that overlapped, not told yet.
+    pub(super) overlaps: Vec<Overlap>,
     /// The spring on which the reader holds a body.
     pub(super) spring: Option<Spring>,
     /// The point whose path is shown: of a body, in its frame \[m\].
     pub(super) traced: Option<(BodyId, [f64; 2])>,
     /// The start of the simulation, from which times are reached; for freedoms the moment at which
     /// they were let go.
-    pub(super) start: Moment,
-    /// Rates and forces; the rates of drivers that are inputs and the loads are the reader's.
-    pub(super) solution: Solution,
+    pub(super) start: MotionState,
     /// Whether rates and forces belong to the pose, where they exist.
     pub(super) has_rates: bool,
     pub(super) picture: MovingPicture,
@@ -57,7 +56,7 @@ pub struct Session {
     energies: Option<[usize; 2]>,
     pub(super) length: Option<DisplayUnit>,
     pub(super) ranges: Vec<Option<DriverRange>>,
-    path: Path,
+    pub(super) path: Path,
     home: Kept,
     history: UndoHistory,
     /// The assembly modes listed last, with their bodies.
@@ -81,13 +80,14 @@ impl Session {
         let mut solver = assembled(&own).map_err(refuse)?;
         let mechanism = Arc::clone(solver.mechanism());
         let (ranges, reached) = driver_ranges(&mut solver, own.drivers.len());
-        let mut solution = Solution::new(&solver);
-        solution.driver_rates = start_rates(&mechanism, &ranges);
-        let freedoms = Freedoms::new(&solver).map_err(|error| vec![error.to_string()])?;
+        let mut motion = Motion::new(solver);
+        motion.solution.driver_rates = start_rates(&mechanism, &ranges);
+        let prepared = motion.prepare_freedoms(Vec::new());
+        prepared.map_err(|error| vec![error.to_string()])?;
         if mechanism.has_dynamics() {
-            solution.seek_forces(&solver);
+            motion.seek_forces();
         }
-        let start = Moment::of(&solver, None);
+        let start = motion.state();
         let home = Kept {
             mechanism: Arc::clone(&mechanism),
             start: start.clone(),
@@ -97,13 +97,13 @@ impl Session {
         let mut session = Self {
             warnings,
             start,
-            energies: freedoms.as_ref().and_then(|_| energies(&outputs)),
-            freedoms,
+            energies: motion.free().and_then(|_| energies(&outputs)),
+            events: None,
+            overlaps: Vec::new(),
             spring: None,
             traced: None,
-            solution,
             has_rates: false,
-            picture: MovingPicture::new(&mut solver, &own, &reached, None),
+            picture: MovingPicture::new(&mut motion.solver, &own, &reached, None),
             outputs,
             length: mechanism.length_display(),
             path: Path::new(&mechanism),
@@ -113,7 +113,7 @@ impl Session {
             home,
             history: UndoHistory::default(),
             modes: Vec::new(),
-            solver,
+            motion,
             source,
         };
         session.refresh();
@@ -138,7 +138,7 @@ impl Session {
     /// values.
     #[must_use]
     pub fn pose(&self) -> &Pose {
-        self.solver.pose()
+        self.motion.solver.pose()
     }
 
     // -- moves -------------------------------------------------------------------------------
@@ -164,7 +164,7 @@ impl Session {
         if !time.is_finite() {
             return Outcome::Refused(Obstacle::new("the time is no finite number"));
         }
-        if self.freedoms.is_some() {
+        if self.motion.free().is_some() {
             return self.fly_to(time);
         }
         if time < self.pose().time
@@ -196,26 +196,26 @@ impl Session {
         mechanism.derive_parameters(&mut values);
         let path = self.path_here();
         path.to.clone_from(&values);
-        let Err(blocked) = self.solver.track(&self.path) else {
+        let Err(blocked) = self.motion.solver.track(&self.path) else {
             self.release_moved(false);
             return self.tell_overlaps(Outcome::Reached);
         };
-        let mut obstacle = Obstacle::of_stop(&blocked, &self.solver, &self.path, |_| false);
+        let mut obstacle = Obstacle::of_stop(&blocked, &self.motion.solver, &self.path, |_| false);
         if let Reason::Stop(_) = blocked.reason {
-            self.solver.restore(&before);
+            self.motion.solver.restore(&before);
             self.refresh();
             return Outcome::Refused(obstacle);
         }
         let way = before.parameters[parameter.index()];
         let limit = way + blocked.s * (value - way);
-        self.solver.restore(&before);
+        self.motion.solver.restore(&before);
         let mut path = self.path_here().clone();
         path.from.clone_from(&values);
         path.to.clone_from(&values);
         match Solver::assembled(Arc::clone(&mechanism), &path) {
             Ok(solver) if anew => {
-                self.solver.restore(solver.pose());
-                self.start = self.here();
+                self.motion.solver.restore(solver.pose());
+                self.start = self.motion.state();
                 self.release_moved(true);
                 return self.tell_overlaps(Outcome::Reached);
             }
@@ -230,7 +230,7 @@ impl Session {
                 obstacle.assembles = true;
             }
             Err(error) => {
-                obstacle = Obstacle::of_assembly(&error, &self.solver);
+                obstacle = Obstacle::of_assembly(&error, &self.motion.solver);
             }
         }
         self.refresh();
@@ -242,7 +242,7 @@ impl Session {
     pub fn set_speed(&mut self, driver: DriverId, velocity: f64, acceleration: f64) {
         self.take();
         let rates = [velocity, acceleration];
-        if let Some(jet) = self.solution.driver_rates.get_mut(driver.index())
+        if let Some(jet) = self.motion.solution.driver_rates.get_mut(driver.index())
             && rates.iter().all(|rate| rate.is_finite())
         {
             *jet = Jet::new(0.0, rates);
@@ -252,7 +252,7 @@ impl Session {
 
     /// Sets the size of a force that is an input \[SI\].
     pub fn set_load(&mut self, input: usize, size: f64) {
-        if let Some(load) = self.solution.loads.get_mut(input)
+        if let Some(load) = self.motion.solution.loads.get_mut(input)
             && size.is_finite()
         {
             *load = size;
@@ -263,8 +263,13 @@ impl Session {
 
     /// Returns descriptions of what has overlapped since the last call.
     fn overlaps(&mut self) -> Vec<String> {
-        let freedoms = self.freedoms.as_mut();
-        freedoms.map_or_else(Vec::new, |freedoms| freedoms.overlaps(&self.own))
+        if let Some((free, ..)) = self.motion.parts() {
+            self.overlaps.extend(free.overlaps());
+        }
+        let overlaps = self.overlaps.drain(..);
+        overlaps
+            .map(|overlap| overlap.describe(&self.own))
+            .collect()
     }
 
     /// Returns the outcome of a move after which parts that overlapped were moved apart.
@@ -277,30 +282,33 @@ impl Session {
 
     /// Prepares the path on which nothing moves, at the pose.
     pub(super) fn path_here(&mut self) -> &mut Path {
-        self.solver.pose().set_path(&mut self.path);
+        self.motion.solver.pose().set_path(&mut self.path);
         &mut self.path
     }
 
     /// Follows the path that was prepared; `moves` tells which drivers move.
     pub(super) fn follow(&mut self, moves: impl Fn(DriverId) -> bool) -> Outcome {
-        match self.solver.track(&self.path) {
+        match self.motion.solver.track(&self.path) {
             Ok(_) => Outcome::Reached,
-            Err(blocked) => {
-                Outcome::Stopped(Obstacle::of_stop(&blocked, &self.solver, &self.path, moves))
-            }
+            Err(blocked) => Outcome::Stopped(Obstacle::of_stop(
+                &blocked,
+                &self.motion.solver,
+                &self.path,
+                moves,
+            )),
         }
     }
 
     /// Goes to the start of the simulation, with parameters and inputs as they are. A failure
     /// leaves the pose.
     pub(super) fn return_to_start(&mut self) -> Result<(), Obstacle> {
-        if self.freedoms.is_some() {
+        if self.motion.free().is_some() {
             let start = self.start.clone();
-            self.return_to(&start);
+            self.motion.resume(&start);
             return Ok(());
         }
         let here = self.pose().clone();
-        self.solver.restore(&self.start.pose);
+        self.motion.solver.restore(&self.start.pose);
         let path = self.path_here();
         path.to.clone_from(&here.parameters);
         for (curve, value) in path.curves.iter_mut().zip(&here.drivers) {
@@ -309,19 +317,19 @@ impl Session {
             }
         }
         if let Outcome::Stopped(obstacle) = self.follow(|_| true) {
-            self.solver.restore(&here);
+            self.motion.solver.restore(&here);
             return Err(obstacle);
         }
-        self.start = self.here();
+        self.start = self.motion.state();
         Ok(())
     }
 
     /// Solves rates and forces at the pose.
     pub(super) fn refresh(&mut self) {
-        self.solution.follow_motions(&self.solver);
+        self.motion.solution.follow_motions(&self.motion.solver);
         let moves = self.release().is_ok();
-        let is_solved = self.solution.solve(&mut self.solver).is_ok();
-        self.has_rates = is_solved && moves && self.solver.rcond() > AT_DEAD_POINT;
+        let is_solved = self.motion.solution.solve(&mut self.motion.solver).is_ok();
+        self.has_rates = is_solved && moves && self.motion.solver.rcond() > AT_DEAD_POINT;
     }
 
     /// Returns the number of variables that are shown.
@@ -360,7 +368,7 @@ impl Session {
         if needs_rates && !self.has_rates {
             return f64::NAN;
         }
-        self.solution.value(&self.solver, output)
+        self.motion.solution.value(&self.motion.solver, output)
     }
 
     // -- pictures and files ------------------------------------------------------------------
@@ -374,11 +382,11 @@ impl Session {
     fn draw_anew(&mut self, keep: bool) {
         self.picture = if keep {
             let scale = self.picture.scale();
-            MovingPicture::new(&mut self.solver, &self.own, &[], Some(scale))
+            MovingPicture::new(&mut self.motion.solver, &self.own, &[], Some(scale))
         } else {
-            let (ranges, reached) = driver_ranges(&mut self.solver, self.own.drivers.len());
+            let (ranges, reached) = driver_ranges(&mut self.motion.solver, self.own.drivers.len());
             self.ranges = ranges;
-            MovingPicture::new(&mut self.solver, &self.own, &reached, None)
+            MovingPicture::new(&mut self.motion.solver, &self.own, &reached, None)
         };
         self.refresh();
     }
@@ -392,8 +400,8 @@ impl Session {
     /// Returns the diagram of the pose, as `biela draw` writes it.
     pub fn diagram(&mut self) -> String {
         self.apart_by_hand(|session| {
-            let scene = Scene::new(&mut session.solver, true);
-            let sheet = Sheet::new(&scene, &session.solver.pose().q);
+            let scene = Scene::new(&mut session.motion.solver, true);
+            let sheet = Sheet::new(&scene, &session.motion.solver.pose().q);
             session.refresh();
             svg::write(&sheet, sheet.width(), false)
         })
@@ -457,15 +465,15 @@ impl Session {
     pub fn reset(&mut self) {
         self.keep();
         self.go_to_state(Some(self.home.clone()));
-        self.solution.driver_rates = start_rates(&self.mechanism, &self.ranges);
-        self.solution.loads.fill(0.0);
+        self.motion.solution.driver_rates = start_rates(&self.mechanism, &self.ranges);
+        self.motion.solution.loads.fill(0.0);
         self.release_moved(false);
     }
 
     fn now(&self) -> Kept {
         Kept {
             mechanism: Arc::clone(self.mechanism()),
-            now: self.here(),
+            now: self.motion.state(),
             start: self.start.clone(),
         }
     }
@@ -482,7 +490,7 @@ impl Session {
             let _ = solver.assemble(&Path::new(solver.mechanism()));
             self.exchange(solver);
         }
-        self.return_to(&kept.now);
+        self.motion.resume(&kept.now);
         self.start = kept.start;
         self.refresh();
         true
@@ -492,7 +500,7 @@ impl Session {
     pub(super) fn adopt(&mut self, solver: Solver) {
         self.keep();
         self.exchange(solver);
-        self.start = self.here();
+        self.start = self.motion.state();
         self.release_moved(true);
     }
 
@@ -500,8 +508,12 @@ impl Session {
     fn exchange(&mut self, solver: Solver) {
         self.take();
         self.mechanism = Arc::clone(solver.mechanism());
-        self.freedoms = Freedoms::new(&solver).unwrap_or_default();
-        self.solver = solver;
+        self.motion.solver = solver;
+        let prepared = self.motion.prepare_freedoms(Vec::new());
+        debug_assert!(
+            prepared.is_ok(),
+            "those of the mechanism before were prepared"
+        );
     }
 }
 

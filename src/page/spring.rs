@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use super::freedoms::{Carrier, Freedoms};
-use crate::kinematics::{Rates, Solution, Solver};
+use crate::dynamics::Motion;
+use crate::kinematics::{Rates, Solver};
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, Expression, Force, ForceLaw, Jet, Load, Marker, MarkerId,
     Mechanism, Variable,
@@ -36,7 +36,7 @@ pub(super) struct Spring {
     /// The first input of the load.
     first_load: usize,
     /// The mechanism without the spring, which waits.
-    pub(super) other: Carrier,
+    pub(super) other: Motion,
 }
 
 impl Spring {
@@ -56,20 +56,17 @@ impl Spring {
         let damping = 2.0 * DAMPING * stiffness / square.sqrt();
         let hung = Arc::new(hung(mechanism, body, grip, [stiffness, damping]));
         let solver = Solver::new(hung).map_err(|error| error.to_string())?;
-        let mut solution = Solution::new(&solver);
-        solution.seek_forces(&solver);
-        let freedoms = Freedoms::new(&solver).map_err(|error| error.to_string())?;
+        let mut other = Motion::new(solver);
+        other.seek_forces();
+        let prepared = other.prepare_freedoms(Vec::new());
+        prepared.map_err(|error| error.to_string())?;
         Ok(Self {
             body,
             grip,
             hand,
             stiffness,
             first_load: mechanism.force_inputs().len(),
-            other: Carrier {
-                freedoms: freedoms.ok_or("nothing moves by forces")?,
-                solution,
-                solver,
-            },
+            other,
         })
     }
 
@@ -83,13 +80,9 @@ impl Spring {
 
 /// Returns the acceleration of a point of a body per force that acts there, the sum of two directions
 /// at right angles \[1/kg\]: the trace of ∂r/∂u J⁻¹ (∂r/∂u)ᵀ. `None` if no freedom moves the point.
-pub(super) fn mobility(
-    solver: &mut Solver,
-    freedoms: &Freedoms,
-    body: BodyId,
-    arm: [f64; 2],
-) -> Option<f64> {
-    let own = freedoms.motion.freedoms();
+pub(super) fn mobility(motion: &mut Motion, body: BodyId, arm: [f64; 2]) -> Option<f64> {
+    let (free, solver, _) = motion.parts()?;
+    let own = free.freedoms();
     let radius = HAND * solver.size() / SQRT_2;
     let mut rates = Rates::new(solver.pose().q.len());
     let mut motions = DMatrix::zeros(3, own.len());
@@ -100,7 +93,7 @@ pub(super) fn mobility(
         let moved = [vx - omega * arm[1], vy + omega * arm[0], omega * radius];
         motions.set_column(column, &moved.into());
     }
-    let inertia = freedoms.motion.inertia().lu();
+    let inertia = free.inertia().lu();
     let mobility = inertia.solve(&motions.tr_mul(&motions))?.trace();
     (mobility.is_finite() && mobility > 0.0).then_some(mobility)
 }

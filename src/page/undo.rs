@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::freedoms::Moment;
+use crate::dynamics::MotionState;
 use crate::mechanism::Mechanism;
 
 /// Most states that can be undone.
@@ -12,8 +12,8 @@ const MOST_KEPT: usize = 200;
 #[derive(Clone)]
 pub(super) struct Kept {
     pub(super) mechanism: Arc<Mechanism>,
-    pub(super) now: Moment,
-    pub(super) start: Moment,
+    pub(super) now: MotionState,
+    pub(super) start: MotionState,
 }
 
 /// The states before the present one, and those that were undone.

@@ -159,7 +159,7 @@ fn a_hand_pulls_by_a_spring() {
     let stiffness = stiffness.expect("the hand holds the rod");
     for time in [0.1, 0.5, 6.0] {
         play(&mut session, time);
-        let motion = &session.freedoms.as_ref().expect("it swings").motion;
+        let motion = session.motion.free().expect("it swings");
         let error = motion.energy_error();
         assert!(error.abs() < TOLERANCE, "{error}");
     }
@@ -171,7 +171,7 @@ fn a_hand_pulls_by_a_spring() {
     let gained = variable(&session, "energy.total") - before;
     assert!((gained - 1.2 * GRAVITY * 0.5 * (y + LENGTH)).abs() < 1e-6);
     // The effort of a freedom is zero, with the spring as a force among others.
-    let effort = session.solution.force(ForceQuantity::Effort(SWING));
+    let effort = session.motion.solution.force(ForceQuantity::Effort(SWING));
     assert!(effort.abs() < 1e-9, "{effort}");
     let mut frame = Vec::new();
     session.write_frame(&mut frame);
@@ -292,7 +292,7 @@ fn a_motion_in_other_coordinates_is_shown_in_the_files_own() {
         play(&mut crank, time);
         let off = session.driver(SWING).value - variable(&crank, "rocker.phi");
         assert!(wrapped(off).abs() < 100.0 * TOLERANCE, "{time}: {off}");
-        let is_exchanged = session.solver.mechanism().drivers[0].coordinate
+        let is_exchanged = session.motion.solver.mechanism().drivers[0].coordinate
             != session.mechanism().drivers[0].coordinate;
         if is_exchanged {
             exchanged += 1;
@@ -315,7 +315,7 @@ fn a_motion_in_other_coordinates_is_shown_in_the_files_own() {
         session.hold(BodyId(2), [0.3, 0.0], hand);
         let until = session.pose().time + 0.02;
         play(&mut session, until);
-        let motion = &session.freedoms.as_ref().expect("it moves").motion;
+        let motion = session.motion.free().expect("it moves");
         let error = motion.energy_error();
         assert!(error.abs() < 100.0 * TOLERANCE, "{error}");
     }
@@ -349,11 +349,11 @@ fn a_motor_has_the_torque_that_the_reader_sets() {
     let free = variable(&session, "crank_angle.acceleration");
     session.set_load(0, 3.0);
     let driven = variable(&session, "crank_angle.acceleration");
-    let motion = &session.freedoms.as_ref().expect("it moves").motion;
+    let motion = session.motion.free().expect("it moves");
     let torque = motion.inertia()[(0, 0)] * (driven - free);
     assert!((torque - 3.0).abs() < 1e-9, "{torque}");
     play(&mut session, 0.5);
-    let motion = &session.freedoms.as_ref().expect("it moves").motion;
+    let motion = session.motion.free().expect("it moves");
     assert!(motion.energy_error().abs() < 10.0 * TOLERANCE);
 }
 
