@@ -46,7 +46,11 @@ impl From<Notice<'_>> for Message {
         let text = notice.to_string();
         match notice {
             Notice::Event(..) | Notice::Crossing(..) => Self::Note(text),
-            _ => Self::Warning(text),
+            Notice::Overlap(..)
+            | Notice::Approach(..)
+            | Notice::Excursion(_)
+            | Notice::OffPulley(_)
+            | Notice::LiftOff(_) => Self::Warning(text),
         }
     }
 }

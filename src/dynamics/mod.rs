@@ -11,7 +11,8 @@
 //! | [`integrator`] | ordinary differential equations, one step at a time |
 //! | `error` | reasons for which a motion stops |
 //! | `moving` | [`Motion`]: a mechanism in motion, driven or free, which hosts move |
-//! | `notice` | [`Notice`]: what is worth knowing of a motion, in words |
+//! | `notice` | [`Notice`]: what is worth knowing of a motion, found and in words |
+//! | `told` | [`Told`]: what has been told, so that it is told once |
 //! | `given` | what comes from outside: inputs |
 //! | `state` | [`FreeState`]: all numbers on which a motion depends |
 //! | `charts` | the coordinates in which the freedoms are integrated |
@@ -67,6 +68,7 @@ mod stages;
 mod starts;
 mod state;
 mod statics;
+mod told;
 mod trials;
 mod triangular;
 mod variations;
@@ -81,9 +83,10 @@ pub use held::Held;
 pub use linear::StateSpace;
 pub use motion::FreeMotion;
 pub use moving::{Motion, MotionState, Stop};
-pub use notice::{Notice, Told};
+pub use notice::Notice;
 pub use overlap::Overlap;
 pub use passive::{Mode, Passive};
 pub use starts::KeptStart;
 pub use state::FreeState;
+pub use told::Told;
 pub use watch::event_indicators;

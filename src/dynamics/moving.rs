@@ -8,11 +8,11 @@ use super::error::Error;
 use super::given::Given;
 use super::linear::StateSpace;
 use super::motion::FreeMotion;
-use super::notice::{Notice, Told};
 use super::state::FreeState;
+use super::told::Told;
 use crate::kinematics::{
-    self, Blocked, Budget, Direction, ForceParts, Output, Path, Pose, Progress, Solution, Solver,
-    SolverChoices,
+    self, Blocked, Budget, Direction, ForceParts, Forces, Output, Path, Pose, Progress, Solution,
+    Solver, SolverChoices,
 };
 use crate::mechanism::{DriverId, Mechanism};
 
@@ -43,24 +43,33 @@ pub struct Motion {
     /// Rates and forces at the pose where they were [solved](Self::solve) last; what is given of them
     /// is the host's.
     pub solution: Solution,
-    free: Option<Free>,
-    told: Told,
-    /// Whether nobody has been told of the path followed last.
-    has_passed: bool,
-    /// Whether the mechanism has stopped on it: its pose is then told with the reason.
-    has_stopped: bool,
+    /// What has been told.
+    pub told: Told,
+    /// Whether a free motion ends at events: [`advance`](Self::advance) may then not reach its time.
+    pub ends_at_events: bool,
+    pub(super) free: Option<Free>,
+    pub(super) way: Way,
     /// Whether forces are solved for the sake of contacts that pull alone.
     watches_contacts: bool,
-    /// Whether a free motion ends at events.
-    ends_at_events: bool,
     /// Whether the reactions of contacts were solved at the pose.
-    knows_contacts: bool,
+    pub(super) knows_contacts: bool,
+}
+
+/// The path that a mechanism has followed last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// It was told.
+    Told,
+    /// It was followed to its end, of which nobody has been told.
+    Passed,
+    /// The mechanism has stopped on it; the pose is told with the reason.
+    Stopped,
 }
 
 /// The motion of freedoms.
 #[derive(Debug)]
-struct Free {
-    motion: FreeMotion,
+pub(super) struct Free {
+    pub(super) motion: FreeMotion,
     /// Its state before it begins, in the file's own coordinates.
     fresh: FreeState,
     /// Whether it has begun; freedoms are held on the path otherwise.
@@ -86,23 +95,19 @@ pub enum Stop {
 }
 
 impl Motion {
-    /// Makes the motion of a mechanism at a solver's pose, with its freedoms held. Ropes that are off their
-    /// pulleys there are no news.
+    /// Makes the motion of a mechanism at a solver's pose, with its freedoms held.
     #[must_use]
     pub fn new(solver: Solver) -> Self {
-        let mut motion = Self {
+        Self {
             solution: Solution::new(&solver),
+            told: Told::new(&solver, 0),
             solver,
-            free: None,
-            told: Told::default(),
-            has_passed: false,
-            has_stopped: false,
-            watches_contacts: false,
             ends_at_events: false,
+            free: None,
+            way: Way::Told,
+            watches_contacts: false,
             knows_contacts: false,
-        };
-        motion.tell_anew();
-        motion
+        }
     }
 
     /// Prepares the free motion of the mechanism, if it has freedoms, with its derivatives along
@@ -155,8 +160,7 @@ impl Motion {
     /// Solves forces too, from now on.
     pub fn seek_forces(&mut self) {
         self.solution.seek_forces(&self.solver);
-        self.told.lifted =
-            vec![false; self.solution.forces().map_or(0, |forces| forces.contacts())];
+        self.told.lifted = vec![false; self.contacts()];
     }
 
     /// Watches contacts, which tell where they pull though nobody asks for forces. Returns whether there
@@ -172,14 +176,19 @@ impl Motion {
         true
     }
 
+    /// Returns the number of joints that can only push, zero unless forces are sought.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.solution.forces().map_or(0, Forces::contacts)
+    }
+
     /// Goes to a pose in the file's own coordinates, with the solver's choices there, and holds freedoms.
     /// Nothing of an earlier motion has been told then.
     pub fn begin(&mut self, pose: &Pose, choices: &SolverChoices) {
         self.take_own();
         self.hold();
-        let resumed = self.solver.resume(pose, choices);
-        debug_assert!(resumed, "the choices are those of this mechanism");
-        self.tell_anew();
+        self.return_to(pose, choices, None);
+        self.told = Told::new(&self.solver, self.contacts());
     }
 
     /// Goes to a pose with the solver's choices there and in the coordinates of a free motion there. That
@@ -191,6 +200,7 @@ impl Motion {
         }
         let resumed = self.solver.resume(pose, choices);
         debug_assert!(resumed, "the choices are those of this mechanism");
+        self.arrive(Way::Told);
     }
 
     /// Goes on with the free motion from a state of it, at the pose that belongs to it.
@@ -335,14 +345,17 @@ impl Motion {
         track: impl FnOnce(&mut Solver) -> Result<Progress, Blocked>,
     ) -> Result<Progress, Blocked> {
         let followed = track(&mut self.solver);
-        self.arrive(followed.is_ok());
+        self.arrive(match followed {
+            Ok(_) => Way::Passed,
+            Err(_) => Way::Stopped,
+        });
         followed
     }
 
     /// Moves on to a time. Without freedoms that were released the mechanism follows `path`, which ends
     /// there; otherwise it jumps to the inputs at its time and to the parameters at the end of the path,
     /// and moves on by the forces with the inputs `given`, to the first event if it
-    /// [ends](Self::end_at_events) there.
+    /// [ends](Self::ends_at_events) there.
     ///
     /// # Errors
     ///
@@ -359,21 +372,18 @@ impl Motion {
         let advanced = free
             .jump(solver, given, &path.to)
             .and_then(|()| advance(free, solver, solution, given, until));
-        self.arrive(advanced.is_ok());
+        self.arrive(match advanced {
+            Ok(()) => Way::Passed,
+            Err(_) => Way::Stopped,
+        });
         advanced.map_err(Stop::Free)
     }
 
-    /// Notes that a path was followed, to its end or not.
+    /// Notes that the pose is another one.
     #[inline]
-    fn arrive(&mut self, reached: bool) {
-        self.has_passed = reached;
-        self.has_stopped = !reached;
+    fn arrive(&mut self, way: Way) {
+        self.way = way;
         self.knows_contacts = false;
-    }
-
-    /// Lets the free motion end at its events: [`advance`](Self::advance) may then not reach its time.
-    pub fn end_at_events(&mut self, ends: bool) {
-        self.ends_at_events = ends;
     }
 
     /// Takes over the rates of prescribed motions at the pose, and those of a free motion with its passive
@@ -417,78 +427,6 @@ impl Motion {
     #[must_use]
     pub fn value(&self, output: &Output) -> f64 {
         self.solution.value(&self.solver, output)
-    }
-
-    /// Returns what is worth knowing and was not told yet, in the order in which it came about. The host
-    /// asks after each [advance](Self::advance) and after each [solution](Self::solve).
-    pub fn notices(&mut self) -> impl Iterator<Item = Notice<'_>> {
-        let Self {
-            solver,
-            solution,
-            free,
-            told,
-            ..
-        } = self;
-        let has_passed = std::mem::take(&mut self.has_passed);
-        let approach = match has_passed {
-            true => solver.approach(&mut told.near_singular),
-            false => None,
-        };
-        let solver = &*solver;
-        let (mechanism, pose) = (&**solver.mechanism(), solver.pose());
-        let happenings = happenings(free.as_mut(), mechanism);
-        let crossings = has_passed.then(|| crossings(solver)).into_iter().flatten();
-        let goes_on = !self.has_stopped;
-        let values = mechanism.drivers.iter().zip(&pose.drivers);
-        let values = values.filter(move |_| goes_on);
-        let excursions = values
-            .zip(&mut told.beyond)
-            .filter_map(|((driver, value), beyond)| driver.excursion(*value, pose.time, beyond));
-        let off_pulleys = goes_on.then(|| solver.off_pulleys(&mut told.off_pulleys));
-        let off_pulleys = off_pulleys.into_iter().flatten();
-        let forces = solution.forces().filter(|_| self.knows_contacts);
-        let lift_offs = forces.map(|forces| solver.lift_offs(forces, &mut told.lifted));
-        happenings
-            .chain(approach.map(|approach| Notice::Approach(approach, pose.time)))
-            .chain(crossings)
-            .chain(excursions.map(Notice::Excursion))
-            .chain(off_pulleys.map(Notice::OffPulley))
-            .chain(lift_offs.into_iter().flatten().map(Notice::LiftOff))
-    }
-
-    /// Returns the overlaps and events among the [notices](Self::notices).
-    pub fn happenings(&mut self) -> impl Iterator<Item = Notice<'_>> {
-        happenings(self.free.as_mut(), self.solver.mechanism())
-    }
-
-    /// Returns the change points on the path followed last, whether they were told or not.
-    pub fn crossings(&self) -> impl Iterator<Item = Notice<'_>> {
-        crossings(&self.solver)
-    }
-
-    /// Returns what has been told.
-    #[must_use]
-    pub fn told(&self) -> &Told {
-        &self.told
-    }
-
-    /// Takes over what has been told, at a pose to which the motion returns.
-    pub fn set_told(&mut self, told: &Told) {
-        self.told.clone_from(told);
-    }
-
-    /// Forgets what has been told.
-    fn tell_anew(&mut self) {
-        (self.has_passed, self.has_stopped) = (false, false);
-        let mechanism = self.mechanism();
-        self.told = Told {
-            near_singular: false,
-            beyond: vec![false; mechanism.drivers.len()],
-            off_pulleys: vec![false; mechanism.pulleys()],
-            lifted: vec![false; self.told.lifted.len()],
-        };
-        // Those at the start are told with the mechanism.
-        self.solver.off_pulleys(&mut self.told.off_pulleys).count();
     }
 
     /// Returns the directions at the pose: those of a free motion have changed with it.
@@ -535,25 +473,6 @@ impl Motion {
         let (free, solver, solution) = self.parts().ok_or(Error::NoFreedom)?;
         free.linearize(solver, solution, outputs)
     }
-}
-
-/// Returns the overlaps and events of which nobody has read.
-fn happenings<'a>(
-    free: Option<&'a mut Free>,
-    mechanism: &'a Mechanism,
-) -> impl Iterator<Item = Notice<'a>> {
-    free.into_iter().flat_map(|free| {
-        let (overlaps, events) = free.motion.news();
-        let overlaps = overlaps.map(|overlap| Notice::Overlap(overlap, mechanism));
-        overlaps.chain(events.map(|event| Notice::Event(event, mechanism)))
-    })
-}
-
-/// Returns the change points on the path that a solver has followed last.
-fn crossings(solver: &Solver) -> impl Iterator<Item = Notice<'_>> {
-    let time = solver.pose().time;
-    let crossed = solver.crossed().iter();
-    crossed.map(move |crossing| Notice::Crossing(crossing, solver, time))
 }
 
 impl Stop {

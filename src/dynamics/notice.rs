@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::event::Event;
+use super::moving::{Free, Motion, Way};
 use super::overlap::Overlap;
 use crate::kinematics::{Approach, Crossing, LiftOff, OffPulley, Solver};
 use crate::mechanism::{Excursion, Mechanism, show_time};
@@ -43,15 +44,70 @@ impl fmt::Display for Notice<'_> {
     }
 }
 
-/// What has been told of a motion, so that it is told once.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Told {
-    /// Whether the singular position nearby was told.
-    pub near_singular: bool,
-    /// Whether each driver is beyond a limit.
-    pub beyond: Vec<bool>,
-    /// Whether a rope has left each pulley.
-    pub off_pulleys: Vec<bool>,
-    /// Whether each contact pulls.
-    pub lifted: Vec<bool>,
+impl Motion {
+    /// Returns what is worth knowing and was not told yet, in the order in which it came about. The host
+    /// asks after each [advance](Self::advance) and after each [solution](Self::solve).
+    pub fn notices(&mut self) -> impl Iterator<Item = Notice<'_>> {
+        let Self {
+            solver,
+            solution,
+            told,
+            free,
+            way,
+            knows_contacts,
+            ..
+        } = self;
+        let (has_passed, goes_on) = (*way == Way::Passed, *way != Way::Stopped);
+        let mut approach = None;
+        if has_passed {
+            *way = Way::Told;
+            approach = solver.approach(&mut told.near_singular);
+        }
+        let solver = &*solver;
+        let (mechanism, pose) = (&**solver.mechanism(), solver.pose());
+        let happenings = happenings(free.as_mut(), mechanism);
+        let crossings = crossings(solver).filter(move |_| has_passed);
+        let values = mechanism.drivers.iter().zip(&pose.drivers);
+        let values = values.filter(move |_| goes_on).zip(&mut told.beyond);
+        let excursions = values
+            .filter_map(|((driver, value), beyond)| driver.excursion(*value, pose.time, beyond));
+        let off_pulleys = goes_on.then(|| solver.off_pulleys(&mut told.off_pulleys));
+        let forces = solution.forces().filter(|_| *knows_contacts);
+        let lift_offs = forces.map(|forces| solver.lift_offs(forces, &mut told.lifted));
+        happenings
+            .chain(approach.map(|approach| Notice::Approach(approach, pose.time)))
+            .chain(crossings)
+            .chain(excursions.map(Notice::Excursion))
+            .chain(off_pulleys.into_iter().flatten().map(Notice::OffPulley))
+            .chain(lift_offs.into_iter().flatten().map(Notice::LiftOff))
+    }
+
+    /// Returns the overlaps and events among the [notices](Self::notices).
+    pub fn happenings(&mut self) -> impl Iterator<Item = Notice<'_>> {
+        happenings(self.free.as_mut(), self.solver.mechanism())
+    }
+
+    /// Returns the change points on the path followed last, whether they were told or not.
+    pub fn crossings(&self) -> impl Iterator<Item = Notice<'_>> {
+        crossings(&self.solver)
+    }
+}
+
+/// Returns the overlaps and events of which nobody has been told.
+fn happenings<'a>(
+    free: Option<&'a mut Free>,
+    mechanism: &'a Mechanism,
+) -> impl Iterator<Item = Notice<'a>> {
+    free.into_iter().flat_map(|free| {
+        let (overlaps, events) = free.motion.news();
+        let overlaps = overlaps.map(|overlap| Notice::Overlap(overlap, mechanism));
+        overlaps.chain(events.map(|event| Notice::Event(event, mechanism)))
+    })
+}
+
+/// Returns the change points on the path that a solver has followed last.
+fn crossings(solver: &Solver) -> impl Iterator<Item = Notice<'_>> {
+    let time = solver.pose().time;
+    let crossed = solver.crossed().iter();
+    crossed.map(move |crossing| Notice::Crossing(crossing, solver, time))
 }

@@ -3,26 +3,8 @@
 use biela::dynamics::{GivenByPath, Motion, Notice};
 use biela::kinematics::{Path, SolverChoices};
 
+use super::rope::LOWERED;
 use crate::common::{assembled, parse, straight_to};
-
-/// A rope that leaves its pulley where its far end is low, and a driver with a limit above that.
-const LOWERED: &str = r#"
-    format = 1
-    name = "lowered"
-    [ground.markers]
-    track = [0, 0]
-    F = [1, 0]
-    guide = [2, 0, "90*deg"]
-    [bodies]
-    near = { markers = { P = [0, 0] } }
-    far = { markers = { Q = [0, 0, "90*deg"] }, estimate = [2, 0.5, 0] }
-    [joints]
-    track = { type = "translational", markers = ["ground.track", "near.P"] }
-    guide = { type = "translational", markers = ["ground.guide", "far.Q"] }
-    rope = { type = "rope", markers = ["near.P", { marker = "ground.F", radius = 0.1, side = "left" }, "far.Q"], length = 2.1 }
-    [drivers]
-    height = { coordinate = "x", markers = ["ground.guide", "far.Q"], start = 0.5, min = -0.2 }
-"#;
 
 fn sentences(motion: &mut Motion) -> Vec<String> {
     motion.notices().map(|notice| notice.to_string()).collect()
@@ -30,7 +12,7 @@ fn sentences(motion: &mut Motion) -> Vec<String> {
 
 #[test]
 fn limits_and_pulleys_are_told_once_per_excursion_and_anew_after_a_new_start() {
-    let mechanism = parse(LOWERED);
+    let mechanism = parse(&LOWERED.replace("start = 0.5", "start = 0.5, min = -0.2"));
     let (solver, mut path) = assembled(&mechanism);
     let home = solver.pose().clone();
     let mut choices = SolverChoices::default();

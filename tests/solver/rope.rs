@@ -39,7 +39,8 @@ fn cords_and_pulleys_that_change_at_once_end_at_the_closed_form() {
     }
 }
 
-const LOWERED: &str = r#"
+/// A rope that leaves its pulley where its far end is low.
+pub(super) const LOWERED: &str = r#"
     format = 1
     name = "lowered"
     [ground.markers]

@@ -513,7 +513,7 @@ impl Model for MechanismModel {
     }
 
     fn end_steps_at_events(&mut self, end: bool) {
-        self.motion.end_at_events(end);
+        self.motion.ends_at_events = end;
     }
 
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {

@@ -43,7 +43,7 @@ impl MechanismModel {
             path: self.path.clone(),
             split: false,
             before,
-            told_before: self.motion.told().clone(),
+            told_before: self.motion.told.clone(),
             was_current,
         }));
     }
@@ -106,7 +106,7 @@ impl MechanismModel {
             return;
         };
         self.course = parts.before;
-        self.motion.set_told(&parts.told_before);
+        self.motion.told = parts.told_before;
         self.stay_at_committed(parts.was_current);
     }
 

@@ -49,7 +49,7 @@ impl MechanismModel {
         MechanismState {
             course: course.clone(),
             driver_rates: self.motion.solution.driver_rates.clone(),
-            told: self.motion.told().clone(),
+            told: self.motion.told.clone(),
             present,
             present_choices,
         }
@@ -58,7 +58,7 @@ impl MechanismModel {
     pub(super) fn restore_state(&mut self, state: &MechanismState) {
         self.course.clone_from(&state.course);
         (self.motion.solution.driver_rates).copy_from_slice(&state.driver_rates);
-        self.motion.set_told(&state.told);
+        self.motion.told.clone_from(&state.told);
         let (pose, choices) = (&state.present, &state.present_choices);
         self.motion
             .return_to(pose, choices, state.course.free.as_ref());

@@ -1,0 +1,32 @@
+//! What has been told of a motion.
+
+use crate::kinematics::Solver;
+
+/// What has been told of a motion, so that it is told once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Told {
+    /// Whether the singular position nearby was told.
+    pub near_singular: bool,
+    /// Whether each driver is beyond a limit.
+    pub beyond: Vec<bool>,
+    /// Whether a rope has left each pulley.
+    pub off_pulleys: Vec<bool>,
+    /// Whether each contact pulls.
+    pub lifted: Vec<bool>,
+}
+
+impl Told {
+    /// Nothing has been told of a solver's mechanism with this number of contacts. Ropes that are off their
+    /// pulleys at its pose are told with the mechanism.
+    pub(super) fn new(solver: &Solver, contacts: usize) -> Self {
+        let mechanism = solver.mechanism();
+        let mut off_pulleys = vec![false; mechanism.pulleys()];
+        solver.off_pulleys(&mut off_pulleys).for_each(drop);
+        Self {
+            near_singular: false,
+            beyond: vec![false; mechanism.drivers.len()],
+            off_pulleys,
+            lifted: vec![false; contacts],
+        }
+    }
+}
