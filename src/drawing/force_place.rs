@@ -7,8 +7,7 @@ use super::outline::{across, direction, tangent, unit};
 use super::symbol::{ForceArrow, ForceKind, Symbol, TorqueArrow};
 use crate::kinematics::{ForceQuantity, Forces, Origin, Solution, Solver};
 use crate::mechanism::{
-    Coordinate, CoordinateKind, DriverId, Indeterminate, Joint, JointKind, Load, MarkerId,
-    Mechanism, Rope, rounded,
+    Coordinate, CoordinateKind, DriverId, Indeterminate, Load, MarkerId, Mechanism, Rope, rounded,
 };
 
 /// A force or torque that a picture shows.
@@ -94,13 +93,13 @@ impl ForcePlace {
     #[must_use]
     pub fn reaction(mechanism: &Mechanism, parameters: &[f64], joint: usize) -> Self {
         let anchor = |marker| Anchor::of_marker(mechanism, parameters, marker);
-        let Joint { kind, to, .. } = &mechanism.joints[joint];
+        let definition = &mechanism.joints[joint];
         Self {
             kind: ForceKind::Reaction,
-            at: anchor(*to),
-            size: match kind {
-                JointKind::Rope(rope) => pull(joint, rope, parameters, anchor),
-                _ => Size::Reaction(joint),
+            at: anchor(definition.to),
+            size: match definition.rope() {
+                Some(rope) => pull(joint, rope, parameters, anchor),
+                None => Size::Reaction(joint),
             },
         }
     }

@@ -1,6 +1,6 @@
 //! Events of a free motion, and how they are called.
 
-use crate::mechanism::{Force, JointKind, Mechanism, fixed, shown};
+use crate::mechanism::{Force, Joint, Mechanism, fixed, shown};
 
 /// An event of a free motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,27 +38,27 @@ impl Event {
         let Force { name, load, .. } = &mechanism.forces[self.force];
         let coordinate = load.coordinate();
         let coordinate = coordinate.expect("events are those of passive forces");
-        let joint = load.play().map(|joint| &mechanism.joints[joint].kind);
+        let joint = load.play().map(|joint| &mechanism.joints[joint]);
         let speed = |speed| {
             let unit = coordinate.kind.units()[1].suffix();
             format!("{}{unit}", shown(speed))
         };
-        let happens = match (self.kind, joint) {
+        let happens = match (self.kind, joint.map(Joint::rope)) {
             (EventKind::Impact { speed: before }, None) => {
                 format!("impact at stop `{name}` with {}", speed(before))
             }
             (EventKind::Rests, None) => format!("rest at stop `{name}`"),
             (EventKind::Leaves, None) => format!("stop `{name}` is left"),
-            (EventKind::Impact { speed: before }, Some(JointKind::Rope(_))) => {
+            (EventKind::Impact { speed: before }, Some(Some(_))) => {
                 format!("rope `{name}` pulls taut with {}", speed(before))
             }
-            (EventKind::Rests, Some(JointKind::Rope(_))) => format!("rope `{name}` is taut"),
-            (EventKind::Leaves, Some(JointKind::Rope(_))) => format!("rope `{name}` goes slack"),
-            (EventKind::Impact { speed: before }, Some(_)) => {
+            (EventKind::Rests, Some(Some(_))) => format!("rope `{name}` is taut"),
+            (EventKind::Leaves, Some(Some(_))) => format!("rope `{name}` goes slack"),
+            (EventKind::Impact { speed: before }, Some(None)) => {
                 format!("the parts of joint `{name}` meet with {}", speed(before))
             }
-            (EventKind::Rests, Some(_)) => format!("the parts of joint `{name}` touch"),
-            (EventKind::Leaves, Some(_)) => format!("the parts of joint `{name}` part"),
+            (EventKind::Rests, Some(None)) => format!("the parts of joint `{name}` touch"),
+            (EventKind::Leaves, Some(None)) => format!("the parts of joint `{name}` part"),
             (EventKind::Sticks, _) => format!("friction `{name}` sticks"),
             (EventKind::Slides, _) => format!("friction `{name}` slides"),
         };

@@ -1,7 +1,7 @@
 //! Contacts and friction that hold coordinates, in words.
 
 use super::motion::FreeMotion;
-use crate::mechanism::{Force, JointKind, Mechanism, shown};
+use crate::mechanism::{Force, Joint, Mechanism, shown};
 
 /// A contact that pushes, or friction that sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,15 +29,16 @@ impl Held {
         let kind = coordinate.expect("it acts along a coordinate").kind;
         let unit = kind.effort_unit().suffix();
         let (size, push) = (shown(self.size), shown(self.size.abs()));
-        let joint = load.play().map(|joint| &mechanism.joints[joint].kind);
-        match (self.limit, joint) {
+        let joint = load.play().map(|joint| &mechanism.joints[joint]);
+
+        match (self.limit, joint.map(Joint::rope)) {
             (Some(limit), _) => format!(
                 "friction `{name}` sticks, {size}{unit} of up to {}{unit}",
                 shown(limit)
             ),
             (None, None) => format!("on stop `{name}`, {push}{unit}"),
-            (None, Some(JointKind::Rope(_))) => format!("rope `{name}` is taut, {push}{unit}"),
-            (None, Some(_)) => format!("the parts of joint `{name}` touch, {push}{unit}"),
+            (None, Some(Some(_))) => format!("rope `{name}` is taut, {push}{unit}"),
+            (None, Some(None)) => format!("the parts of joint `{name}` touch, {push}{unit}"),
         }
     }
 }

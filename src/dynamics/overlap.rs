@@ -1,7 +1,7 @@
 //! Overlaps of parts, as they are told.
 
 use crate::mechanism::{
-    CoordinateKind, Driver, DriverId, DriverSource, Force, JointKind, Mechanism, show_time, shown,
+    CoordinateKind, Driver, DriverId, DriverSource, Force, Joint, Mechanism, show_time, shown,
     shown_apart,
 };
 
@@ -62,10 +62,11 @@ pub(super) fn describe(depths: &[(usize, f64)], mechanism: &Mechanism) -> String
         let coordinate = load.coordinate().expect("stops and joints have one");
         let (factor, unit) = display(coordinate.kind);
         let depth = format!("{} {unit}", shown(depth * factor));
-        match load.play().map(|joint| &mechanism.joints[joint].kind) {
+        let joint = load.play().map(|joint| &mechanism.joints[joint]);
+        match joint.map(Joint::rope) {
             None => format!("stop `{name}` is passed by {depth}"),
-            Some(JointKind::Rope(_)) => format!("rope `{name}` is too short by {depth}"),
-            Some(_) => format!("the parts of joint `{name}` overlap by {depth}"),
+            Some(Some(_)) => format!("rope `{name}` is too short by {depth}"),
+            Some(None) => format!("the parts of joint `{name}` overlap by {depth}"),
         }
     });
     depths.collect::<Vec<_>>().join(", ")

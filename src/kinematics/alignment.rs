@@ -2,7 +2,7 @@
 
 use super::error::list;
 use super::origin::Origin;
-use crate::mechanism::{BodyId, JointKind, Mechanism};
+use crate::mechanism::{BodyId, Mechanism};
 
 /// The geometry of a group of bodies that can move, to first order, with all drivers held.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -74,8 +74,8 @@ impl Member {
         let Self::Origin(Origin::Joint(joint)) = self else {
             return false;
         };
-        let kind = &mechanism.joints[joint].kind;
-        !matches!(kind, JointKind::Link { .. } | JointKind::Revolute)
+        let joint = &mechanism.joints[joint];
+        joint.rod().is_none() && !joint.is_pin()
     }
 
     /// Returns its line in words; `of_link` stands before the name of a link.

@@ -1,7 +1,7 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{Driver, DriverId, DriverSource, Joint, JointKind, MarkerId, Mechanism, Order, Unit};
+use super::{Driver, DriverId, DriverSource, MarkerId, Mechanism, Order, Unit};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,45 +53,6 @@ impl Coordinate {
             CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
             CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
         }
-    }
-}
-
-impl Joint {
-    /// Returns a coordinate of marker j, measured from marker i and on its axes.
-    #[must_use]
-    pub fn coordinate(&self, kind: CoordinateKind) -> Coordinate {
-        let (from, to) = (self.from, self.to);
-        Coordinate {
-            kind,
-            from,
-            to,
-            axes: from,
-        }
-    }
-
-    /// Returns its markers, each as often as it occurs.
-    pub fn markers(&self) -> impl Iterator<Item = MarkerId> {
-        let (coupled, over): (&[_], &[_]) = match &self.kind {
-            JointKind::Coupling(equation) => (&equation.coordinates, &[]),
-            JointKind::Rope(rope) => (&[], &rope.points),
-            _ => (&[], &[]),
-        };
-        let coupled = coupled
-            .iter()
-            .flat_map(|(_, coordinate)| coordinate.markers());
-        let over = over.iter().map(|point| point.marker);
-        [self.from, self.to].into_iter().chain(coupled).chain(over)
-    }
-
-    /// Returns the coordinate that tells where the joint is on its way, if there is one.
-    #[must_use]
-    pub fn free_coordinate(&self) -> Option<Coordinate> {
-        let kind = match self.kind {
-            JointKind::Revolute => CoordinateKind::Angle,
-            JointKind::Translational | JointKind::Slot => CoordinateKind::X,
-            _ => return None,
-        };
-        Some(self.coordinate(kind))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Equations between coordinates.
 
-use super::{Coordinate, Expression, Motion, Phase, Play, Variable};
+use super::{Coordinate, Expression, Motion, Play, Variable};
 
 /// Most coordinates in one equation.
 pub const MOST_COUPLED: usize = 8;
@@ -38,4 +38,14 @@ impl CoordinateEquation {
         }
         places
     }
+}
+
+/// Constant of a relation between wheels, or of an equation between coordinates.
+#[derive(Clone, Debug)]
+pub enum Phase {
+    /// A value \[m or rad\]; zero if the file gives none.
+    At(Expression),
+    /// The value that the bodies' estimates give with the file's parameters: wheels mesh as they are
+    /// drawn.
+    Drawn,
 }

@@ -7,6 +7,7 @@
 //! | `read` | from the document to the [`Mechanism`], or to all its problems |
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
+//! | `joint` | [`Joint`]: its kinds, and what it is asked whatever its kind |
 //! | `curve` | [`Curve`]: along which a point moves |
 //! | `rope` | [`Rope`]: points and pulleys that a rope runs over |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
@@ -38,6 +39,7 @@ mod force;
 mod force_quantity;
 mod friction;
 mod id;
+mod joint;
 mod lookup;
 mod motion;
 mod names;
@@ -62,7 +64,7 @@ mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use coordinate::{Coordinate, CoordinateKind};
-pub use coupling::{CoordinateEquation, MOST_COUPLED};
+pub use coupling::{CoordinateEquation, MOST_COUPLED, Phase};
 pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
@@ -79,6 +81,7 @@ pub use force::{
 pub use force_quantity::ForceQuantity;
 pub use friction::{Bearing, BearingShape, FrictionLaw};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
+pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
@@ -206,172 +209,6 @@ impl Marker {
     pub(crate) fn numbers(&self) -> impl Iterator<Item = &Expression> {
         self.position.iter().chain([&self.angle])
     }
-}
-
-/// Named set of constraints between two markers.
-#[derive(Clone, Debug)]
-pub struct Joint {
-    /// Name, unique among all named things of the mechanism.
-    pub name: String,
-    /// Description in one line, empty if the file gives none.
-    pub description: String,
-    /// Type of the joint.
-    pub kind: JointKind,
-    /// Marker i.
-    pub from: MarkerId,
-    /// Marker j.
-    pub to: MarkerId,
-}
-
-/// Types of joints.
-#[derive(Clone, Debug)]
-pub enum JointKind {
-    /// Pin: the points coincide, x = y = 0.
-    Revolute,
-    /// Marker j slides along the x-axis of marker i without turning: y = angle = 0.
-    Translational,
-    /// The point of marker j stays on the x-axis of marker i: y = 0.
-    Slot,
-    /// A massless rod between two revolutes (composite revolute–revolute): distance = length.
-    Link {
-        /// Distance between the points \[m\], positive.
-        length: Expression,
-    },
-    /// The point of marker j stays at a distance from the x-axis of marker i (composite
-    /// revolute–translational): y = offset.
-    RevoluteTranslational {
-        /// Signed distance \[m\].
-        offset: Expression,
-    },
-    /// The markers coincide: x = y = angle = 0.
-    Weld,
-    /// Two toothed wheels in mesh. Marker angles set the phase.
-    Gear {
-        /// Sizes of the wheels of markers i and j.
-        sizes: WheelSizes,
-        /// Whether the smaller wheel runs inside the larger one, so that both turn the same way.
-        internal: bool,
-        /// Body that carries both centres, `None` for ground.
-        carrier: Option<BodyId>,
-        /// Value at which the relation of their angles is held.
-        phase: Phase,
-        /// The gap between the flanks, in free motion.
-        play: Option<Box<Play>>,
-    },
-    /// Two wheels joined by a belt or chain. Marker angles set the phase.
-    Belt {
-        /// Sizes of the wheels of markers i and j.
-        sizes: WheelSizes,
-        /// Whether the belt crosses between the wheels, so that they turn opposite ways.
-        crossed: bool,
-        /// Body that carries both centres, `None` for ground.
-        carrier: Option<BodyId>,
-        /// Value at which the relation of their angles is held.
-        phase: Phase,
-    },
-    /// A pinion, which has marker i, that rolls along the x-axis of marker j, the rack.
-    RackAndPinion {
-        /// Radius of the pinion \[m\].
-        radius: Expression,
-        /// Side of the rack on which the pinion is.
-        side: RackSide,
-        /// Value at which the relation of way and angle is held.
-        phase: Phase,
-        /// The gap between the flanks, in free motion.
-        play: Option<Box<Play>>,
-    },
-    /// A wheel, which has marker i, that rolls on the x-axis of marker j, the track, and stays on it.
-    Rolling {
-        /// Radius of the wheel \[m\].
-        radius: Expression,
-        /// Side of the track on which the wheel is.
-        side: RackSide,
-        /// Value at which the relation of way and angle is held.
-        phase: Phase,
-    },
-    /// An equation between coordinates. Marker i is the first one of its first coordinate, marker j
-    /// the second one of its last.
-    Coupling(Box<CoordinateEquation>),
-    /// A follower, which has marker j, on the contour of a cam, which has marker i.
-    Cam {
-        /// Part of the follower that touches the cam.
-        follower: CamFollower,
-        /// Contour of the cam.
-        profile: Profile,
-        /// Whether, and how, the follower lifts off in free motion.
-        play: Option<Box<Play>>,
-    },
-    /// A rope from marker i to marker j over the points between them.
-    Rope(Rope),
-    /// The point of marker j stays on a curve in the frame of marker i.
-    Curve(Curve),
-}
-
-/// Constant of a relation between wheels, or of an equation between coordinates.
-#[derive(Clone, Debug)]
-pub enum Phase {
-    /// A value \[m or rad\]; zero if the file gives none.
-    At(Expression),
-    /// The value that the bodies' estimates give with the file's parameters: wheels mesh as they are
-    /// drawn.
-    Drawn,
-}
-
-impl JointKind {
-    /// Returns the constant of its first relation, if the file may set it.
-    #[must_use]
-    pub fn phase(&self) -> Option<&Phase> {
-        match self {
-            Self::Gear { phase, .. }
-            | Self::Belt { phase, .. }
-            | Self::RackAndPinion { phase, .. }
-            | Self::Rolling { phase, .. } => Some(phase),
-            Self::Coupling(equation) => Some(&equation.phase),
-            _ => None,
-        }
-    }
-}
-
-/// Part of a follower that touches the cam, on the outer side of its contour.
-#[derive(Clone, Debug)]
-pub enum CamFollower {
-    /// The marker's point.
-    Knife,
-    /// A roller round the marker's point.
-    Roller {
-        /// Its radius \[m\], positive.
-        radius: Expression,
-    },
-    /// The marker's x-axis.
-    Flat,
-}
-
-/// Sizes of two wheels, whose ratio is the ratio of transmission.
-#[derive(Clone, Debug)]
-pub enum WheelSizes {
-    /// Radii of the pitch circles \[m\].
-    Radii([Expression; 2]),
-    /// Numbers of teeth.
-    Teeth([Expression; 2]),
-}
-
-impl WheelSizes {
-    /// Returns both sizes, in metres or in teeth.
-    #[must_use]
-    pub fn expressions(&self) -> &[Expression; 2] {
-        match self {
-            Self::Radii(sizes) | Self::Teeth(sizes) => sizes,
-        }
-    }
-}
-
-/// Side of a rack, or of a track, on which a wheel rolls.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RackSide {
-    /// The side of the y-axis of the rack's marker.
-    Above,
-    /// The other side.
-    Below,
 }
 
 /// Coordinate held at a value.

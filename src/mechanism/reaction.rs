@@ -142,7 +142,7 @@ impl List {
             let reported = Reported::of(&joint.kind);
             let body = mechanism.markers[joint.to.index()].body;
             let body = body.map_or("ground", |body| &mechanism.bodies[body.index()].name);
-            if let JointKind::Coupling(equation) = &joint.kind {
+            if let Some(equation) = joint.equation() {
                 self.add_efforts(index, joint, equation);
                 continue;
             }

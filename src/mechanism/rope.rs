@@ -1,6 +1,6 @@
 //! Ropes over points and pulleys.
 
-use super::{Expression, JointKind, MarkerId, Mechanism, Play};
+use super::{Expression, MarkerId, Play};
 
 /// Most moving bodies that one rope runs over: a row of the Jacobian holds the entries of so many.
 pub(crate) const MOST_BODIES: usize = 8;
@@ -64,18 +64,5 @@ impl PulleySide {
             Self::Left => 1.0,
             Self::Right => -1.0,
         }
-    }
-}
-
-impl Mechanism {
-    /// Returns the number of pulleys of all ropes.
-    #[must_use]
-    pub fn pulleys(&self) -> usize {
-        let ropes = self.joints.iter().filter_map(|joint| match &joint.kind {
-            JointKind::Rope(rope) => Some(rope),
-            _ => None,
-        });
-        let points = ropes.flat_map(|rope| &rope.points);
-        points.filter(|point| point.pulley.is_some()).count()
     }
 }

@@ -5,9 +5,7 @@ use std::sync::Arc;
 use super::number::within_turn;
 use crate::drawing::animation::MovingPicture;
 use crate::kinematics::{Error, Path};
-use crate::mechanism::{
-    BodyId, Coordinate, Diagnostic, JointKind, MarkerId, Mechanism, Severity, Source,
-};
+use crate::mechanism::{BodyId, Coordinate, Diagnostic, MarkerId, Mechanism, Severity, Source};
 use crate::page::assembled;
 
 /// Part of the drawing's size within which two points are one.
@@ -150,9 +148,7 @@ impl Drawn {
         let mut next = 0;
         while let Some(&at) = found.get(next) {
             next += 1;
-            let pins = joints
-                .iter()
-                .filter(|j| matches!(j.kind, JointKind::Revolute));
+            let pins = joints.iter().filter(|joint| joint.is_pin());
             for (from, to) in pins.map(|joint| (joint.from, joint.to)) {
                 let other = match at {
                     _ if at == from => to,

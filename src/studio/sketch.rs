@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::drawn::Drawn;
-use crate::mechanism::{Joint, JointKind, MarkerId, Mechanism};
+use crate::mechanism::{Joint, MarkerId, Mechanism};
 
 /// Describes what is drawn. Points are global \[m\], angles in radians.
 ///
@@ -28,7 +28,7 @@ pub(super) fn sketch(drawn: &Drawn) -> Value {
             let [x, y, angle] = drawn.place(joint.from);
             json!({
                 "name": joint.name,
-                "is_pin": matches!(joint.kind, JointKind::Revolute),
+                "is_pin": joint.is_pin(),
                 "at": [x, y],
                 "to": &drawn.place(joint.to)[..2],
                 "angle": angle,
@@ -85,7 +85,7 @@ fn points(drawn: &Drawn, mechanism: &Mechanism, mut left: Vec<MarkerId>) -> Vec<
         left = apart;
         let is_here = |joint: &&Joint| {
             together.contains(&joint.from) && together.contains(&joint.to)
-                || matches!(joint.kind, JointKind::Translational | JointKind::Slot)
+                || (joint.guide()).is_some_and(|guide| guide.aside.is_none())
                     && (together.contains(&joint.from) || together.contains(&joint.to))
         };
         let joints = mechanism.joints.iter().filter(is_here);

@@ -52,7 +52,7 @@ fn comment(line: &str) -> Option<&str> {
 }
 
 /// Returns the Rust files in a folder and the folders in it.
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the folder is there") {
         let path = entry.expect("it can be read").path();

@@ -1,4 +1,5 @@
 //! The sources themselves: imports and comments.
 
+mod joints;
 mod language;
 mod layers;

@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use biela::kinematics::{Curve, End, Path, Pose, RangeSettings, Rates, Sample, Solver};
-use biela::mechanism::{DriverId, JointKind, Mechanism, Source};
+use biela::mechanism::{DriverId, Mechanism, Source};
 
 use super::{Finding, Kind, View, case};
 use crate::mutation::Chance;
@@ -95,7 +95,7 @@ fn differences(solver: &mut Solver) -> Result<(), String> {
     };
     let range = solver.range(driver, &settings);
     let mut joints = solver.mechanism().joints.iter();
-    let has_cams = joints.any(|joint| matches!(joint.kind, JointKind::Cam { .. }));
+    let has_cams = joints.any(|joint| joint.cam().is_some());
     let home = solver.pose().clone();
     let mut scan = Scan::new(solver, driver);
     let ends = [&range.lower, &range.upper].map(|end| value_of(end, driver, home.drivers[0]));

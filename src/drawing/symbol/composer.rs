@@ -18,7 +18,7 @@ pub(in crate::drawing) fn compose(
 ) -> Vec<Symbol> {
     let mut composer = Composer::new(mechanism, parameters, q, motion);
     // The other joints decide where a follower reaches, which its knife points to.
-    let is_cam = |joint: &&Joint| matches!(joint.kind, JointKind::Cam { .. });
+    let is_cam = |joint: &&Joint| joint.cam().is_some();
     let (cams, others): (Vec<&Joint>, Vec<&Joint>) = mechanism.joints.iter().partition(is_cam);
     for joint in others.into_iter().chain(cams) {
         let ends = [joint.from, joint.to].map(|marker| composer.anchor(marker));

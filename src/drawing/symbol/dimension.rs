@@ -39,20 +39,16 @@ pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> 
     }
     for joint in &composer.mechanism.joints {
         let ends = [joint.from, joint.to].map(|marker| composer.anchor(marker));
-        match &joint.kind {
-            JointKind::Link { length } => lengths.push(Dimension {
+        if let Some(length) = joint.rod() {
+            lengths.push(Dimension {
                 ends,
                 text: told(composer.value(length), unit),
                 body: None,
-            }),
-            JointKind::Translational | JointKind::Slot => {
-                lengths.extend(offset(composer, places, ends, 0.0));
-            }
-            JointKind::RevoluteTranslational { offset: aside } => {
-                let aside = composer.value(aside);
-                lengths.extend(offset(composer, places, ends, aside));
-            }
-            _ => {}
+            });
+        }
+        if let Some(guide) = joint.guide() {
+            let aside = guide.aside.map_or(0.0, |aside| composer.value(aside));
+            lengths.extend(offset(composer, places, ends, aside));
         }
     }
     if lengths.is_empty() {

@@ -66,7 +66,7 @@ pub(super) fn behind(composer: &Composer, face: &Face, points: &[[f64; 2]]) -> V
         let point = along.moved_to(*position);
         composer.mechanism.joints.iter().any(|joint| {
             let ends = [joint.from, joint.to].map(|marker| composer.anchor(marker));
-            matches!(joint.kind, JointKind::Revolute | JointKind::Link { .. })
+            (joint.is_pin() || joint.rod().is_some())
                 && ends
                     .iter()
                     .any(|end| end.body == along.body && end.is_at(&point))

@@ -1,6 +1,7 @@
 //! Guides of bodies that slide lengthwise: a follower's stem, a rack.
 
 use super::*;
+use crate::mechanism::Wheels;
 
 /// Ends of a guide as parts of the stretch that always lies between the contact and a stem's end.
 const STEM_PARTS: [f64; 2] = [0.3, 0.75];
@@ -17,14 +18,16 @@ pub(super) fn compose(composer: &mut Composer, along: Anchor, to: Anchor) -> boo
     let joints = composer.mechanism.joints.iter();
     let own = joints.filter(|joint| composer.anchor(joint.to).body == to.body);
     let guides: Vec<(SlideWay, Option<Point>)> = own
-        .filter_map(|joint| match &joint.kind {
-            JointKind::Cam { follower, .. } => stem(composer, along, to, joint, follower),
-            JointKind::RackAndPinion { radius, side, .. } => {
-                let pair = [joint.from, joint.to].map(|marker| composer.anchor(marker));
-                let radius = composer.value(radius);
-                Some((back(composer, along, to, pair, radius, *side)?, None))
+        .filter_map(|joint| {
+            if let Some((follower, _)) = joint.cam() {
+                return stem(composer, along, to, joint, follower);
             }
-            _ => None,
+            let Some(Wheels::Rack { radius, side }) = joint.wheels() else {
+                return None;
+            };
+            let pair = [joint.from, joint.to].map(|marker| composer.anchor(marker));
+            let radius = composer.value(radius);
+            Some((back(composer, along, to, pair, radius, side)?, None))
         })
         .collect();
     let is_guided = !guides.is_empty();

@@ -10,8 +10,7 @@ use crate::drawing::{Anchor, Scene, Symbol};
 use crate::exchange::note::Note;
 use crate::kinematics::Solver;
 use crate::mechanism::{
-    BodyId, CamFollower, Curve, Expression, Joint, JointKind, MarkerId, Mechanism, Profile,
-    ProfileInForce,
+    BodyId, CamFollower, Curve, Expression, Joint, MarkerId, Mechanism, Profile, ProfileInForce,
 };
 
 /// Greatest distance of arcs from the contours of cams and from curves: what a mill repeats \[mm\].
@@ -166,38 +165,40 @@ impl<'a> Writer<'a> {
         for joint in &self.mechanism.joints {
             let [from, to] = [joint.from, joint.to].map(|marker| self.anchor(marker));
             let layers = [from, to].map(|anchor| self.layer(anchor.body));
-            match &joint.kind {
-                JointKind::Revolute => {
-                    // One circle for both: they coincide, up to rounding.
-                    let at = self.at(from);
-                    for layer in &layers {
-                        self.pin(layer, at, self.pin);
-                    }
-                    self.name(&layers[0], at, &joint.name);
+            if joint.is_pin() {
+                // One circle for both: they coincide, up to rounding.
+                let at = self.at(from);
+                for layer in &layers {
+                    self.pin(layer, at, self.pin);
                 }
-                JointKind::Link { .. } => {
-                    let ends = [from, to].map(|end| self.at(end));
-                    for (layer, at) in layers.iter().zip(ends) {
-                        self.pin(layer, at, self.pin);
-                        self.pin(&joint.name, at, self.pin);
-                    }
-                    self.entities.line(&joint.name, ends);
+                self.name(&layers[0], at, &joint.name);
+            }
+            if joint.rod().is_some() {
+                let ends = [from, to].map(|end| self.at(end));
+                for (layer, at) in layers.iter().zip(ends) {
+                    self.pin(layer, at, self.pin);
+                    self.pin(&joint.name, at, self.pin);
                 }
-                JointKind::Slot => self.way(joint, from, to, 0.0),
-                JointKind::RevoluteTranslational { offset } => {
-                    self.way(joint, from, to, self.value(offset));
+                self.entities.line(&joint.name, ends);
+            }
+            match joint.guide() {
+                Some(guide) if guide.turns => {
+                    let aside = guide.aside.map_or(0.0, |aside| self.value(aside));
+                    self.way(joint, from, to, aside);
                 }
-                JointKind::Translational => {
+                Some(_) => {
                     let range = self.range(from, to);
                     let layer = format!("{}{SLIDE}{}", layers[0], layers[1]);
                     let ends = self.part(from, range);
                     self.entities.line(&layer, ends);
                 }
-                JointKind::Cam {
-                    follower, profile, ..
-                } => self.cam(from, to, follower, profile),
-                JointKind::Curve(curve) => self.curve(from, to, curve),
-                _ => {}
+                None => {}
+            }
+            if let Some((follower, profile)) = joint.cam() {
+                self.cam(from, to, follower, profile);
+            }
+            if let Some(curve) = joint.curve() {
+                self.curve(from, to, curve);
             }
         }
     }

@@ -13,7 +13,7 @@ use crate::kinematics::error::millimetres;
 use crate::kinematics::origin::Origin;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
-use crate::mechanism::{JointKind, MarkerId};
+use crate::mechanism::MarkerId;
 
 /// Largest distance of markers that were drawn in one place, in sizes of the mechanism: a sketch is
 /// measured to that.
@@ -86,11 +86,10 @@ pub(in crate::kinematics) fn drawn_apart(
     let mut pins_in_place = 0;
     let mut apart = Vec::new();
     for (joint, distance) in mechanism.joints.iter().zip(distances) {
-        let is_line = match joint.kind {
-            JointKind::Revolute | JointKind::Weld => false,
-            JointKind::Slot | JointKind::Translational => true,
-            _ => continue,
-        };
+        let is_line = (joint.guide()).is_some_and(|guide| guide.aside.is_none());
+        if !(is_line || joint.is_point()) {
+            continue;
+        }
         let ends = [joint.from, joint.to];
         let Some(distance) = distance.filter(|_| ends.into_iter().all(is_in_place)) else {
             continue;

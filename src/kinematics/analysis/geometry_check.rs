@@ -14,8 +14,8 @@ use crate::kinematics::constraint::configuration::{Configuration, ProfileId, per
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::mechanism::{
-    CamFollower, Expression, Interval, Jet3, JointKind, MarkerId, ProfileInForce, RackSide,
-    WheelSizes, fixed_apart,
+    CamFollower, Expression, Interval, Jet3, MarkerId, ProfileInForce, RackSide, WheelSizes,
+    Wheels, fixed_apart,
 };
 
 /// A joint that does not fit its own numbers at a pose.
@@ -184,26 +184,12 @@ pub(in crate::kinematics) fn geometry_warnings(
     let mut warnings: Vec<_> = joints
         .filter_map(|joint| {
             let centres = [joint.from, joint.to];
-            let kind = match &joint.kind {
-                JointKind::Gear {
-                    sizes: WheelSizes::Radii(radii),
-                    internal,
-                    ..
-                } => check.gear(centres, check.numbers(radii), *internal),
-                JointKind::Belt {
-                    sizes: WheelSizes::Radii(radii),
-                    crossed,
-                    ..
-                } => check.belt(centres, check.numbers(radii), *crossed),
-                JointKind::RackAndPinion { radius, side, .. } => {
-                    check.rack(centres, radius.value(check.parameters), *side)
-                }
-                JointKind::Cam { follower, .. } => {
-                    let profile = profiles.next().map(|id| state.at.profile(id));
-                    profile.and_then(|profile| check.cam(profile, follower))
-                }
-                _ => None,
-            };
+            let of_cam = joint.cam().and_then(|(follower, _)| {
+                let profile = profiles.next().map(|id| state.at.profile(id));
+                check.cam(profile?, follower)
+            });
+            let of_wheels = |wheels| check.wheels(centres, wheels);
+            let kind = of_cam.or_else(|| joint.wheels().and_then(of_wheels));
             let joint = joint.name.clone();
             kind.map(|kind| GeometryWarning { joint, kind })
         })
@@ -243,6 +229,23 @@ impl Check<'_> {
 
     fn distance(&self, [from, to]: [MarkerId; 2]) -> f64 {
         (self.at.marker(to).point - self.at.marker(from).point).norm()
+    }
+
+    fn wheels(&self, centres: [MarkerId; 2], wheels: Wheels) -> Option<GeometryWarningKind> {
+        let radii = |sizes: &WheelSizes| match sizes {
+            WheelSizes::Radii(radii) => Some(self.numbers(radii)),
+            WheelSizes::Teeth(_) => None,
+        };
+        match wheels {
+            Wheels::Mesh {
+                sizes, internal, ..
+            } => self.gear(centres, radii(sizes)?, internal),
+            Wheels::Belt { sizes, crossed, .. } => self.belt(centres, radii(sizes)?, crossed),
+            Wheels::Rack { radius, side } => {
+                self.rack(centres, radius.value(self.parameters), side)
+            }
+            Wheels::Track => None,
+        }
     }
 
     fn gear(

@@ -26,7 +26,7 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockSolver, JacobianFactors};
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
-use crate::mechanism::{BodyId, CoordinateKind, JointKind, MarkerId};
+use crate::mechanism::{BodyId, CoordinateKind, MarkerId};
 
 /// Distance of a sine from 1 that is rounding: the angle has half of its digits there.
 const RIGHT: f64 = 1e-12;
@@ -122,20 +122,18 @@ fn passage(system: &System, row: usize) -> Option<Passage> {
                 return None;
             };
             let joint = &system.mechanism().joints[joint];
-            match joint.kind {
-                JointKind::Rope(_) => return Some(Passage::Rope(row)),
-                JointKind::Curve(_) => {
-                    let before = row.checked_sub(1).map(|before| equations[before].origin);
-                    let is_first = before != Some(equation.origin);
-                    let markers = [joint.from, joint.to];
-                    return is_first.then_some(Passage::Curve([row, row + 1], markers));
-                }
-                _ => {}
+            if joint.rope().is_some() {
+                return Some(Passage::Rope(row));
+            }
+            if joint.curve().is_some() {
+                let before = row.checked_sub(1).map(|before| equations[before].origin);
+                let is_first = before != Some(equation.origin);
+                let markers = [joint.from, joint.to];
+                return is_first.then_some(Passage::Curve([row, row + 1], markers));
             }
             // The last row of a cam holds the distance of the two parts.
             let next = equations.get(row + 1).map(|next| next.origin);
-            let is_contact =
-                matches!(joint.kind, JointKind::Cam { .. }) && next != Some(equation.origin);
+            let is_contact = joint.cam().is_some() && next != Some(equation.origin);
             is_contact.then_some(Passage::Line(row, joint.to))
         }
     }

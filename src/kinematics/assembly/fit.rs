@@ -6,7 +6,7 @@ use crate::kinematics::error::Fit;
 use crate::kinematics::origin::Origin;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
-use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};
+use crate::mechanism::{BodyId, Joint, MarkerId};
 
 /// Returns the length of a link or a rope, or between the two pins of a body, that would close an
 /// origin, or whether the phase of its wheels as drawn would.
@@ -20,52 +20,48 @@ pub(in crate::kinematics) fn fit(system: &System, state: &State, origin: Origin)
     let joint = &mechanism.joints[index];
     let point = |marker| state.at.marker(marker).point;
     let length = |from, to| (point(to) - point(from)).norm();
-    match joint.kind {
-        JointKind::Link { .. } | JointKind::Rope(_) => {
-            let row = system.rows_of(&[origin])[0];
-            Some(Fit::Length {
-                origin: origin.describe(mechanism),
-                between: None,
-                length: system.equations()[row].constraint.value(&state.at),
-                present: state.targets.constant(row),
-            })
-        }
-        JointKind::Revolute => {
-            // The body declared last of the two is the one that people have added.
-            let ends = [(joint.to, joint.from), (joint.from, joint.to)];
-            let body = |marker: MarkerId| mechanism.markers[marker.index()].body;
-            let mut found: Vec<_> = ends
-                .into_iter()
-                .filter_map(|(own, partner)| {
-                    let body = body(own)?;
-                    let other = other_pin(system, body, index)?;
-                    Some((body, own, partner, other))
-                })
-                .collect();
-            found.sort_by_key(|(body, ..)| body.index());
-            let (body, own, partner, other) = found.pop()?;
-            let name = |marker: MarkerId| mechanism.markers[marker.index()].name.clone();
-            Some(Fit::Length {
-                origin: format!("body `{}`", mechanism.bodies[body.index()].name),
-                between: Some([name(other), name(own)]),
-                length: length(other, partner),
-                present: length(other, own),
-            })
-        }
-        _ => {
-            joint.kind.phase()?;
-            let row = *system.rows_of(&[origin]).first()?;
-            let equation = &system.equations()[row];
-            let drawn = estimate(system, &state.pose.parameters).ok()?;
-            let mut at = state.at.clone();
-            let here = equation.constraint.value(&at);
-            at.set_pose(mechanism, &drawn);
-            let missing = (equation.constraint.value(&at) - here) * equation.row_scale(&at);
-            (missing.abs() <= CLOSED).then(|| Fit::Phase {
-                origin: origin.describe(mechanism),
-            })
-        }
+    if joint.rod().is_some() || joint.rope().is_some() {
+        let row = system.rows_of(&[origin])[0];
+        return Some(Fit::Length {
+            origin: origin.describe(mechanism),
+            between: None,
+            length: system.equations()[row].constraint.value(&state.at),
+            present: state.targets.constant(row),
+        });
     }
+    if joint.is_pin() {
+        // The body declared last of the two is the one that people have added.
+        let ends = [(joint.to, joint.from), (joint.from, joint.to)];
+        let body = |marker: MarkerId| mechanism.markers[marker.index()].body;
+        let mut found: Vec<_> = ends
+            .into_iter()
+            .filter_map(|(own, partner)| {
+                let body = body(own)?;
+                let other = other_pin(system, body, index)?;
+                Some((body, own, partner, other))
+            })
+            .collect();
+        found.sort_by_key(|(body, ..)| body.index());
+        let (body, own, partner, other) = found.pop()?;
+        let name = |marker: MarkerId| mechanism.markers[marker.index()].name.clone();
+        return Some(Fit::Length {
+            origin: format!("body `{}`", mechanism.bodies[body.index()].name),
+            between: Some([name(other), name(own)]),
+            length: length(other, partner),
+            present: length(other, own),
+        });
+    }
+    joint.kind.phase()?;
+    let row = *system.rows_of(&[origin]).first()?;
+    let equation = &system.equations()[row];
+    let drawn = estimate(system, &state.pose.parameters).ok()?;
+    let mut at = state.at.clone();
+    let here = equation.constraint.value(&at);
+    at.set_pose(mechanism, &drawn);
+    let missing = (equation.constraint.value(&at) - here) * equation.row_scale(&at);
+    (missing.abs() <= CLOSED).then(|| Fit::Phase {
+        origin: origin.describe(mechanism),
+    })
 }
 
 /// Returns the length beyond which an origin that is open by `gap` \[m\] closes.
@@ -103,7 +99,7 @@ fn other_pin(system: &System, body: BodyId, pin: usize) -> Option<MarkerId> {
             return None;
         };
         let joint = &mechanism.joints[index];
-        if !matches!(joint.kind, JointKind::Revolute) {
+        if !joint.is_pin() {
             return None;
         }
         if index != pin && other.replace(index).is_some_and(|before| before != index) {

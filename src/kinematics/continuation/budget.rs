@@ -1,6 +1,6 @@
 //! The work that may be spent.
 
-use crate::mechanism::{Joint, JointKind, Mechanism, rounded};
+use crate::mechanism::{Joint, Mechanism, rounded};
 
 /// Work of a usual budget \[s\], on a processor of 3 GHz: twice as much keeps a host waiting twice as
 /// long for a step that leads nowhere.
@@ -39,8 +39,7 @@ impl Budget {
         if freedoms == 0 {
             return Self::of(MOST as u32);
         }
-        let is_cam = |joint: &&Joint| matches!(joint.kind, JointKind::Cam { .. });
-        let contours = mechanism.joints.iter().filter(is_cam).count();
+        let contours = mechanism.joints.iter().filter_map(Joint::cam).count();
         let poses = OF_BODY * mechanism.bodies.len() as f64 + OF_CONTOUR * contours as f64;
         let work = poses * (1.0 + (freedoms as f64 / FREEDOMS).powi(2));
         Self::of(rounded(WORK / work, 1).clamp(FEWEST, MOST) as u32)

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::solve::Forces;
 use crate::kinematics::state::State;
-use crate::mechanism::{JointKind, show_time, shown};
+use crate::mechanism::{show_time, shown};
 
 /// A part of the largest reaction below which a pulling force is rounding.
 const PULLS: f64 = 1e-9;
@@ -60,10 +60,7 @@ impl Forces {
                 time: state.pose.time,
                 joint: &self.mechanism.joints[contact.joint].name,
                 pull: -force,
-                is_rope: matches!(
-                    self.mechanism.joints[contact.joint].kind,
-                    JointKind::Rope(_)
-                ),
+                is_rope: self.mechanism.joints[contact.joint].rope().is_some(),
             })
         })
     }

@@ -1,6 +1,6 @@
 //! The numbers that [`Forces`](super::Forces) solves.
 
-use crate::mechanism::{JointKind, Mechanism};
+use crate::mechanism::Mechanism;
 
 /// The numbers of one pose: w, and what follows from it.
 #[derive(Debug)]
@@ -48,9 +48,9 @@ impl Results {
 /// Returns a place for each joint's efforts along the coordinates of its equation.
 pub(super) fn shares(mechanism: &Mechanism) -> Vec<Vec<f64>> {
     let joints = mechanism.joints.iter();
-    let count = joints.map(|joint| match &joint.kind {
-        JointKind::Coupling(equation) => equation.coordinates.len(),
-        _ => 0,
+    let count = joints.map(|joint| {
+        let equation = joint.equation();
+        equation.map_or(0, |equation| equation.coordinates.len())
     });
     count.map(|count| vec![0.0; count]).collect()
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Coupling, Gradient};
 use crate::kinematics::origin::Origin;
-use crate::kinematics::system::{System, contact_place, opens_towards};
-use crate::mechanism::{BodyId, Joint, JointKind, Mechanism, Number, Reported};
+use crate::kinematics::system::{System, opens_towards};
+use crate::mechanism::{BodyId, Joint, Mechanism, Number, Reported};
 
 /// The sum of the generalized forces that rows exert on a joint's second body, or on ground.
 #[derive(Clone, Copy, Debug)]
@@ -112,11 +112,11 @@ impl ReactionRows {
             }
         }
         for (joint, definition) in mechanism.joints.iter().enumerate() {
-            match (&definition.kind, &rows.joints[joint][..]) {
-                (JointKind::Revolute, &[x, y]) => rows.pins.push((joint, [x, y])),
+            match rows.joints[joint][..] {
+                [x, y] if definition.is_pin() => rows.pins.push((joint, [x, y])),
                 _ => rows.others.push(joint),
             }
-            if let JointKind::Coupling(_) = definition.kind {
+            if definition.equation().is_some() {
                 rows.couplings.push(joint);
             }
         }
@@ -264,16 +264,14 @@ impl Contact {
     /// Returns the contacts of a mechanism.
     pub(super) fn all(mechanism: &Mechanism, rows: &ReactionRows) -> Vec<Self> {
         let joints = mechanism.joints.iter().enumerate();
-        let contact = |(joint, Joint { kind, .. }): (usize, &Joint)| {
-            let is_contact = matches!(
-                kind,
-                JointKind::Cam { .. } | JointKind::Rolling { .. } | JointKind::Rope(_)
-            );
-            let row = rows.joints[joint].get(contact_place(kind));
-            let row = *row.filter(|_| is_contact)?;
+        let closed = joints.filter(|(joint, definition)| {
+            definition.is_one_sided() && mechanism.play(*joint).is_none()
+        });
+        let contact = |(joint, _): (usize, &Joint)| {
+            let row = *rows.joints[joint].last()?;
             Some(Self { joint, row })
         };
-        joints.filter_map(contact).collect()
+        closed.filter_map(contact).collect()
     }
 
     /// Returns the force between the two parts \[N\], positive if they push each other; the tension

@@ -10,7 +10,7 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::kinematics::tolerances::{DEPENDENT, LEAST_COEFFICIENT};
-use crate::mechanism::{BodyId, Coordinate, DriverId, Joint, JointKind, MarkerId, Mechanism};
+use crate::mechanism::{BodyId, Coordinate, DriverId, Joint, MarkerId, Mechanism};
 
 /// Distance of the other poses that tell redundancy from a singular position, in radians and
 /// characteristic lengths: far enough for the rank to change, near enough for the mechanism to
@@ -188,7 +188,7 @@ fn suspect_slots(mechanism: &Mechanism, loose: &[String]) -> Vec<String> {
         name.is_some_and(|name| loose.contains(&name))
     };
     let joints = mechanism.joints.iter().filter(|joint| {
-        let is_slot = matches!(joint.kind, JointKind::Slot);
+        let is_slot = (joint.guide()).is_some_and(|guide| guide.turns && guide.aside.is_none());
         is_slot && !mechanism.drivers.is_empty() && is_loose(joint.from) != is_loose(joint.to)
     });
     joints

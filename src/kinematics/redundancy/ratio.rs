@@ -10,7 +10,6 @@ use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
 use crate::kinematics::system::Equation;
 use crate::kinematics::tolerances::DEPENDENT;
-use crate::mechanism::JointKind;
 
 /// Largest ratio of the ways of two coordinates, in radians and characteristic lengths: beyond it an
 /// equation counts as depending on those of the slower one.
@@ -45,9 +44,7 @@ fn ratio_of(compiled: &CompiledMechanism, state: &State, equation: &Equation) ->
     let Origin::Joint(joint) = equation.origin else {
         return None;
     };
-    let JointKind::Coupling(own) = &mechanism.joints[joint].kind else {
-        return None;
-    };
+    let own = mechanism.joints[joint].equation()?;
     let scale = |constraint: &dyn Constraint| match constraint.dimension() {
         Dimension::Length => state.at.size(),
         Dimension::Angle => 1.0,

@@ -15,7 +15,7 @@ use crate::kinematics::constraint::configuration::{Configuration, perp};
 use crate::kinematics::origin::Origin;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::system::System;
-use crate::mechanism::{BodyId, Coordinate, CoordinateKind, DriverId, JointKind, MarkerId};
+use crate::mechanism::{BodyId, Coordinate, CoordinateKind, DriverId, MarkerId};
 
 /// Largest distance of a line from a point that it passes through, as part of the mechanism's size,
 /// and largest angle between parallel lines \[rad\], at a position that is located: the unknowns there
@@ -191,18 +191,20 @@ impl<'a> Moving<'a> {
         let joints = mechanism.joints.iter().enumerate().map(|(index, joint)| {
             let origin = Origin::Joint(index);
             let (from, to) = (joint.from, joint.to);
-            let way = match joint.kind {
-                JointKind::Revolute => Way::Pin(self.at.marker(to).point),
-                JointKind::Link { .. } => self.bar(origin, from, to),
-                JointKind::Slot
-                | JointKind::Translational
-                | JointKind::RevoluteTranslational { .. } => Way::Line(Line {
+            let way = if joint.is_pin() {
+                Way::Pin(self.at.marker(to).point)
+            } else if joint.rod().is_some() {
+                self.bar(origin, from, to)
+            } else if joint.guide().is_some() {
+                Way::Line(Line {
                     point: self.at.marker(to).point,
                     direction: perp(self.at.marker(from).axis),
                     of: Member::Origin(origin),
-                }),
-                JointKind::Cam { .. } => self.contact(origin, to),
-                _ => Way::Other,
+                })
+            } else if joint.cam().is_some() {
+                self.contact(origin, to)
+            } else {
+                Way::Other
             };
             (origin, way, from, to)
         });

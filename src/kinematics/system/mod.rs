@@ -14,7 +14,6 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use joint::JointParts;
-pub(super) use joint::contact_place;
 pub(super) use linearise::{RowValue, Values};
 pub(super) use play::{OpenRelation, opens_towards};
 
@@ -26,8 +25,8 @@ use crate::kinematics::constraint::{
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    Coordinate, DriverId, Expression, Jet, JointKind, Load, Mechanism, Motion, MotionInForce,
-    MovingProfile, Number, ParameterId, Phase,
+    Coordinate, DriverId, Expression, Jet, Load, Mechanism, Motion, MotionInForce, MovingProfile,
+    Number, ParameterId, Phase,
 };
 
 /// The target of c(q).
@@ -99,19 +98,19 @@ impl System {
         for (index, joint) in mechanism.joints.iter().enumerate() {
             let origin = Origin::Joint(index);
             joint_parts.parameters.clear();
-            let opens = mechanism.play(index).map(|_| contact_place(&joint.kind));
-            match joint.kind {
-                JointKind::Rope(_) if opens.is_none() => ropes.push((index, equations.len())),
-                JointKind::Curve(_) => curves.push((index, equations.len())),
-                _ => {}
+            let mut relations = joint::relations(&mechanism, origin, joint, &mut joint_parts);
+            if mechanism.play(index).is_some()
+                && let Some((constraint, target)) = relations.pop()
+            {
+                let parameters = joint_parts.parameters.clone();
+                open.push(OpenRelation::new(index, constraint, target, parameters));
+            } else if joint.rope().is_some() {
+                ropes.push((index, equations.len()));
             }
-            let relations = joint::relations(&mechanism, origin, joint, &mut joint_parts);
-            for (place, (constraint, target)) in relations.into_iter().enumerate() {
-                if opens == Some(place) {
-                    let parameters = joint_parts.parameters.clone();
-                    open.push(OpenRelation::new(index, constraint, target, parameters));
-                    continue;
-                }
+            if joint.curve().is_some() {
+                curves.push((index, equations.len()));
+            }
+            for (constraint, target) in relations {
                 equations.push(Equation {
                     origin,
                     constraint,

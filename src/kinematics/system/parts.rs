@@ -7,7 +7,7 @@ use super::{Equation, Target};
 use crate::kinematics::constraint::configuration::extent;
 use crate::kinematics::constraint::{Dimension, Incidence};
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
-use crate::mechanism::{JointKind, Mechanism, ProfileInForce};
+use crate::mechanism::{Mechanism, ProfileInForce};
 
 /// Least part of the mechanism's size that counts: a body of some eps of it is a point.
 const LEAST: f64 = 1e-15;
@@ -49,7 +49,7 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
         sizes[part] = sizes[part].max(extent(places));
     }
     for joint in &mechanism.joints {
-        if let JointKind::Cam { profile, .. } = &joint.kind
+        if let Some((_, profile)) = joint.cam()
             && let Some(body) = mechanism.markers[joint.from.index()].body
         {
             let mut profile = ProfileInForce::new(profile, mechanism.parameters.len());

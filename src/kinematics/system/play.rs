@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::kinematics::constraint::Constraint;
 use crate::kinematics::constraint::configuration::{Configuration, perp};
-use crate::mechanism::{CamFollower, Expression, Joint, JointKind, Mechanism, ParameterId, Play};
+use crate::mechanism::{CamFollower, Expression, Joint, Mechanism, ParameterId, Play};
 
 /// The relation between the two parts of a joint with play.
 #[derive(Debug)]
@@ -68,12 +68,11 @@ impl OpenRelation {
 
 /// Returns 1 if the relation of a contact grows as it opens, and −1 if it falls, as that of a rope.
 pub(in crate::kinematics) fn opens_towards(joint: &Joint, at: &Configuration) -> f64 {
-    match &joint.kind {
-        JointKind::Rope(_) => -1.0,
-        JointKind::Cam {
-            follower: CamFollower::Flat,
-            ..
-        } => {
+    if joint.rope().is_some() {
+        return -1.0;
+    }
+    match joint.cam() {
+        Some((CamFollower::Flat, _)) => {
             // The row moves the face against its normal. The cam's pole is on the inner side of each
             // tangent of its contour.
             let (cam, face) = (at.marker(joint.from), at.marker(joint.to));

@@ -2,7 +2,7 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::{
-    Bearing, BearingShape, Force, ForceLaw, FrictionLaw, Joint, JointKind, Load, PassiveCause,
+    Bearing, BearingShape, Force, ForceLaw, FrictionLaw, Joint, Load, PassiveCause,
     RegularisedFriction,
 };
 
@@ -129,10 +129,10 @@ impl<'a> Context<'a> {
         let index = keys.joint.value?;
         // None is behind the joints: a constraint.
         let joint = joints?.get(index);
-        let kind = joint.map(|joint| &joint.kind);
         let coordinate = joint.and_then(Joint::free_coordinate);
-        let is_pin = matches!(kind, Some(JointKind::Revolute));
-        let is_guide = matches!(kind, Some(JointKind::Translational));
+        let is_pin = joint.is_some_and(Joint::is_pin);
+        let guide = joint.and_then(Joint::guide);
+        let is_guide = guide.is_some_and(|guide| !guide.turns);
         let subject = &keys.owner.subject;
         let foreign = [(&keys.radius.key, is_pin), (&keys.length.key, is_guide)];
         let foreign = foreign

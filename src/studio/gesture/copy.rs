@@ -9,7 +9,7 @@ use super::super::number::{angle, within_turn};
 use super::super::reference::references;
 use super::super::text::{TomlText, in_braces, in_lines};
 use super::{Editing, Refusal, names, number, point};
-use crate::mechanism::{Body, BodyId, Joint, JointKind, MarkerId, Mechanism};
+use crate::mechanism::{Body, BodyId, Joint, MarkerId, Mechanism};
 
 /// The way from a body to its copy.
 #[derive(Clone, Copy, Debug)]
@@ -82,9 +82,10 @@ pub(super) fn copy(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
         None => true,
     };
     // An equation ties drivers and measures, which have no copies.
-    let joints = mechanism.joints.iter().filter(|joint| {
-        !matches!(joint.kind, JointKind::Coupling(_)) && joint.markers().all(is_copied)
-    });
+    let joints = mechanism
+        .joints
+        .iter()
+        .filter(|joint| joint.equation().is_none() && joint.markers().all(is_copied));
     let joints: Vec<&Joint> = joints.collect();
     if way.is_mirror() {
         refuse_unmirrored(&joints)?;
@@ -95,13 +96,11 @@ pub(super) fn copy(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
     };
     let wheels: Vec<BodyId> = (joints.iter())
         .flat_map(|joint| {
-            let carrier = match joint.kind {
-                JointKind::Gear { carrier, .. } | JointKind::Belt { carrier, .. } => carrier,
-                JointKind::RackAndPinion { .. } | JointKind::Rolling { .. } => None,
-                _ => return Vec::new(),
+            let Some(wheels) = joint.wheels() else {
+                return Vec::new();
             };
             let ends = joint.markers().map(|id| mechanism.markers[id.index()].body);
-            ends.chain([carrier]).flatten().collect()
+            ends.chain([wheels.carrier()]).flatten().collect()
         })
         .collect();
     for body in &bodies {
@@ -207,10 +206,10 @@ fn write_entry(editing: &mut Editing, [section, name]: [&str; 2], entries: &[(St
 
 /// Refuses to mirror what has a shape of its own.
 fn refuse_unmirrored(joints: &[&Joint]) -> Result<(), Refusal> {
-    let shaped = joints.iter().find_map(|joint| match joint.kind {
-        JointKind::Cam { .. } => Some((joint, "the contour of its cam")),
-        JointKind::Curve(_) => Some((joint, "its curve")),
-        _ => None,
+    let shaped = joints.iter().find_map(|joint| {
+        let of_cam = joint.cam().map(|_| "the contour of its cam");
+        let of_curve = joint.curve().map(|_| "its curve");
+        Some((joint, of_cam.or(of_curve)?))
     });
     match shaped {
         Some((joint, shape)) => Err(format!(
@@ -332,10 +331,7 @@ fn copy_joint(
         mirror_phase(editing, &mut entries, joint, copies);
     }
     if way.is_mirror()
-        && matches!(
-            joint.kind,
-            JointKind::RackAndPinion { .. } | JointKind::Rolling { .. }
-        )
+        && joint.wheels().is_some_and(|wheels| wheels.is_on_line())
         && !entries.iter().any(|(key, _)| key == "side")
     {
         entries.push(("side".to_owned(), "\"below\"".to_owned()));
@@ -352,11 +348,10 @@ fn mirror_phase(
     joint: &Joint,
     copies: &Copies,
 ) {
-    let carrier = match joint.kind {
-        JointKind::Gear { carrier, .. } | JointKind::Belt { carrier, .. } => carrier,
-        JointKind::RackAndPinion { .. } | JointKind::Rolling { .. } => None,
-        _ => return,
+    let Some(wheels) = joint.wheels() else {
+        return;
     };
+    let carrier = wheels.carrier();
     let mechanism = editing.drawn.mechanism.as_ref();
     let bodies = mechanism.map_or(&[][..], |mechanism| &mechanism.bodies);
     let carrier = carrier.and_then(|id| bodies.get(id.index()));

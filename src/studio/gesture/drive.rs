@@ -2,7 +2,7 @@
 
 use super::mass::{USUAL_MASS, give_mass};
 use super::{Editing, Refusal};
-use crate::mechanism::{Coordinate, JointKind};
+use crate::mechanism::Coordinate;
 
 /// Drives the coordinate of a joint, from where it is drawn.
 pub(super) fn driver(editing: &mut Editing, name: &str) -> Result<(), Refusal> {
@@ -59,9 +59,10 @@ fn coordinate(editing: &Editing, name: &str) -> Result<(Coordinate, String), Ref
     } else {
         body
     };
-    let word = match joint.kind {
-        JointKind::Revolute => format!("{body}_angle"),
-        _ => format!("{body}_travel"),
+    let word = if coordinate.kind.is_angle() {
+        "angle"
+    } else {
+        "travel"
     };
-    Ok((coordinate, word))
+    Ok((coordinate, format!("{body}_{word}")))
 }

@@ -2,7 +2,7 @@
 
 use super::shift::refresh_estimates;
 use super::{Editing, Onto, Refusal, Target, marker_name};
-use crate::mechanism::{JointKind, MarkerId};
+use crate::mechanism::MarkerId;
 
 /// The centre of a wheel.
 pub(super) struct Centre {
@@ -46,10 +46,10 @@ impl Centre {
         };
         let mechanism = editing.mechanism()?;
         let pinned = editing.drawn.pinned_to(editing.marker(&path)?);
-        let wheels = mechanism.joints.iter().flat_map(|joint| match joint.kind {
-            JointKind::Gear { .. } | JointKind::Belt { .. } => vec![joint.from, joint.to],
-            JointKind::RackAndPinion { .. } | JointKind::Rolling { .. } => vec![joint.from],
-            _ => Vec::new(),
+        let wheels = mechanism.joints.iter().flat_map(|joint| {
+            let own = joint.wheels();
+            let second = own.filter(|wheels| !wheels.is_on_line()).map(|_| joint.to);
+            own.map(|_| joint.from).into_iter().chain(second)
         });
         // The ring of a planetary gear may be ground, which is no wheel that turns.
         let mut wheels = wheels.filter(|id| mechanism.markers[id.index()].body.is_some());
