@@ -7,6 +7,7 @@ use super::draft::{
     Stop, Wheels,
 };
 use super::names::Names;
+use crate::mechanism::write::{degrees, in_unit};
 use crate::mechanism::{is_identifier, shortest, similar_identifier};
 
 /// Longest line of comments, and of markers in one line.
@@ -344,19 +345,15 @@ impl Writer<'_> {
     fn length(&self, length: f64) -> String {
         let number = shortest(length, self.decimals);
         match self.draft.unit {
-            _ if number == "0" => number,
             LengthUnit::Metre => number,
-            unit => format!("\"{number}*{}\"", unit.name()),
+            unit => in_unit(number, unit.name()),
         }
     }
 
     /// Returns an angle in degrees, to about the relative accuracy of lengths.
     fn angle(&self, angle: f64) -> String {
         let decimals = usize::try_from(self.draft.digits - 3).unwrap_or(0);
-        match shortest(angle.to_degrees(), decimals) {
-            zero if zero == "0" => zero,
-            number => format!("\"{number}*deg\""),
-        }
+        degrees(angle, decimals)
     }
 
     fn value(&self, coordinate: Coordinate, value: f64) -> String {

@@ -5,6 +5,7 @@
 //! | `source`, `encoding` | [`Source`]: the text, its lines and columns |
 //! | `syntax` | TOML document in which each key and value knows its place |
 //! | `read` | from the document to the [`Mechanism`], or to all its problems |
+//! | `write` | the text of a file: numbers, sections, changes in place |
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
 //! | `joint` | [`Joint`]: its kinds, and what it is asked whatever its kind |
@@ -61,6 +62,8 @@ mod table;
 mod toml_error;
 mod unit_slip;
 mod wording;
+#[cfg(feature = "page")]
+pub(crate) mod write;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use coordinate::{Coordinate, CoordinateKind};

@@ -1,15 +1,10 @@
 //! The text of a mechanism file with other values. Comments and layout stay.
 
-use toml_edit::{Array, DocumentMut, Item, TableLike, TomlError, Value};
+use toml_edit::TomlError;
 
 use crate::kinematics::Pose;
-use crate::mechanism::{DriverId, DriverSource, Mechanism, constant, rounded};
-
-/// Digits of an estimate: the assembly starts from it, and ends at the same pose.
-const ESTIMATE_DIGITS: usize = 9;
-/// Digits of all other numbers at most: a start value decides the pose, and rounding may put it
-/// beyond a stop or a dead point.
-const ALL_DIGITS: usize = 17;
+use crate::mechanism::write::{NumberInUnit, TomlText, estimate, largest_coordinate};
+use crate::mechanism::{DriverId, DriverSource, Mechanism};
 
 /// A text that is no mechanism file.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -46,114 +41,53 @@ pub fn edit(
     (pose, velocity): (&Pose, impl Fn(DriverId) -> Option<f64>),
     place: Place,
 ) -> Result<String, EditError> {
-    let mut document: DocumentMut = text.parse()?;
-    let root = document.as_table_mut();
+    let mut text = TomlText::new(text)?;
     for (parameter, value) in mechanism.parameters.iter().zip(&pose.parameters) {
         if names.contains(&parameter.name) {
-            let parameters = table(root.get_mut("parameters"))?;
-            match parameters.get_mut(&parameter.name) {
-                Some(item) if item.is_table_like() => {
-                    set_number(table(Some(item))?, "value", *value);
-                }
-                _ => set_number(parameters, &parameter.name, *value),
-            }
+            let own = ["parameters", &*parameter.name, "value"];
+            let is_number = !text.has_keys(&own[..2]);
+            set_number(&mut text, if is_number { &own[..2] } else { &own }, *value)?;
         }
     }
     if place != Place::Keep {
         let drivers = mechanism.drivers.iter().zip(&pose.drivers).enumerate();
         for (index, (driver, value)) in drivers {
-            let (key, velocity) = match driver.source {
+            let (section, velocity) = match driver.source {
                 DriverSource::Input { .. } => ("drivers", None),
                 DriverSource::Free { .. } => ("freedoms", velocity(DriverId(index))),
                 DriverSource::Motion(_) => continue,
             };
-            let drivers = table(root.get_mut(key))?;
-            let driver = table(drivers.get_mut(&driver.name))?;
-            set_number(driver, "start", *value);
+            set_number(&mut text, &[section, &driver.name, "start"], *value)?;
             if let Some(velocity) = velocity {
-                set_number(driver, "velocity", velocity);
+                set_number(&mut text, &[section, &driver.name, "velocity"], velocity)?;
             }
         }
     }
     if place == Place::Whole {
+        let size = largest_coordinate(&pose.q);
         for (body, q) in mechanism.bodies.iter().zip(pose.q.chunks_exact(3)) {
-            let bodies = table(root.get_mut("bodies"))?;
-            let body = table(bodies.get_mut(&body.name))?;
-            let old = body.get("estimate").and_then(Item::as_array).cloned();
-            let values = q.iter().enumerate().map(|(k, value)| {
-                let old = old.as_ref().and_then(|old| old.get(k));
-                let value = rounded(*value, ESTIMATE_DIGITS);
-                old.and_then(|old| in_unit_of(old, value, ESTIMATE_DIGITS))
-                    .unwrap_or_else(|| value.into())
-            });
-            let estimate = values.collect::<Array>();
-            set(body, "estimate", Value::Array(estimate));
+            let path = ["bodies", &*body.name, "estimate"];
+            let old = |index| Some(&text.as_str()[text.element(&path, index)?]);
+            let estimate = estimate([q[0], q[1], q[2]], size, old);
+            set(&mut text, &path, &estimate)?;
         }
     }
-    Ok(laid_out_as(text, document.to_string()))
-}
-
-/// Returns an edited text with the byte order mark and the line ends of the old one, which a
-/// document does not keep.
-fn laid_out_as(old: &str, edited: String) -> String {
-    const MARK: char = '\u{feff}';
-    let mark = if old.starts_with(MARK) {
-        "\u{feff}"
-    } else {
-        ""
-    };
-    let lines = old.matches('\n').count();
-    let edited = edited.trim_start_matches(MARK).replace("\r\n", "\n");
-    if lines > 0 && old.matches("\r\n").count() == lines {
-        mark.to_owned() + &edited.replace('\n', "\r\n")
-    } else {
-        mark.to_owned() + &edited
-    }
-}
-
-/// Returns the table that an item of a mechanism file is.
-fn table(item: Option<&mut Item>) -> Result<&mut dyn TableLike, EditError> {
-    item.and_then(Item::as_table_like_mut)
-        .ok_or(EditError::Table)
+    Ok(text.as_str().to_owned())
 }
 
 /// Sets a number of a table; the unit of the old one stays.
-fn set_number(table: &mut dyn TableLike, key: &str, number: f64) {
-    let old = table.get(key).and_then(Item::as_value);
-    let in_unit = old.and_then(|old| in_unit_of(old, number, ALL_DIGITS));
-    let value = in_unit.unwrap_or_else(|| quotient(number, 1.0, ALL_DIGITS).into());
-    set(table, key, value);
+fn set_number(text: &mut TomlText, path: &[&str], number: f64) -> Result<(), EditError> {
+    let value = NumberInUnit::write_in_unit_of(text.get(path), number);
+    set(text, path, &value)
 }
 
-/// Sets a value of a table; a comment behind the old one stays.
-fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
-    if let Some(Item::Value(old)) = table.get_mut(key) {
-        *value.decor_mut() = old.decor().clone();
-        *old = value;
-    } else {
-        table.insert(key, Item::Value(value));
+/// Sets a value of a table of the mechanism.
+fn set(text: &mut TomlText, path: &[&str], value: &str) -> Result<(), EditError> {
+    if !text.has_keys(&path[..path.len() - 1]) {
+        return Err(EditError::Table);
     }
-}
-
-/// Returns a number in the unit of an old value, if that has one: `"50*mm"` after `"40*mm"`.
-fn in_unit_of(old: &Value, value: f64, digits: usize) -> Option<Value> {
-    let (number, unit) = old.as_str()?.split_once('*')?;
-    number.trim().parse::<f64>().ok()?;
-    let factor = constant(unit.trim())?;
-    let number = quotient(value, factor, digits);
-    Some(format!("{number}*{}", unit.trim()).into())
-}
-
-/// Returns a value in units of a factor. It is rounded to twelve digits where these give the value
-/// to rounding, otherwise to `digits`.
-fn quotient(value: f64, factor: f64, digits: usize) -> f64 {
-    /// Units in the last place of the value by which product and quotient can miss it.
-    const NEAR: f64 = 4.0 * f64::EPSILON;
-    let number = value / factor;
-    let is_near = |number: &f64| (number * factor - value).abs() <= NEAR * value.abs();
-    Some(rounded(number, 12))
-        .filter(is_near)
-        .unwrap_or_else(|| rounded(number, digits))
+    text.set(path, value);
+    Ok(())
 }
 
 #[cfg(test)]

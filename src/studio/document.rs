@@ -6,7 +6,7 @@ use super::drawn::Drawn;
 use super::gesture::{self, Editing, Refusal};
 use super::sketch::sketch;
 use super::status::{State, sentence};
-use super::text::TomlText;
+use crate::mechanism::write::TomlText;
 use crate::mechanism::{Diagnostic, Severity, Source};
 
 /// Most texts to which undo returns.

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::number::within_turn;
 use crate::drawing::animation::MovingPicture;
 use crate::kinematics::{Error, Path};
 use crate::mechanism::{BodyId, Coordinate, Diagnostic, MarkerId, Mechanism, Severity, Source};
@@ -198,4 +197,15 @@ pub(super) fn inside([x, y, phi]: [f64; 3], at: [f64; 2]) -> [f64; 2] {
     let (sin, cos) = phi.sin_cos();
     let [dx, dy] = [at[0] - x, at[1] - y];
     [cos * dx + sin * dy, cos * dy - sin * dx]
+}
+
+/// Returns the angle in (−π, π] that differs by whole turns.
+pub(super) fn within_turn(angle: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    let rest = angle - turn * (angle / turn).round();
+    if rest <= -std::f64::consts::PI {
+        rest + turn
+    } else {
+        rest
+    }
 }

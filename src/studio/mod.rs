@@ -7,9 +7,8 @@
 //!
 //! | file | subject |
 //! |---|---|
-//! | `text` | the text of a file, changed in place |
-//! | `places`, `reference` | its keys and texts, and the names in them |
-//! | `names`, `number` | new names, and numbers as a person writes them |
+//! | `reference` | the names in the texts of a file |
+//! | `names` | new names |
 //! | `unit_of` | the unit of a number by its place |
 //! | `drawn` | the mechanism where its file starts it |
 //! | `gesture` | gestures, one file each |
@@ -25,14 +24,11 @@ mod gesture;
 mod host;
 mod inspect;
 mod names;
-mod number;
-mod places;
 mod reference;
 mod sketch;
 mod status;
 #[cfg(test)]
 mod tests;
-mod text;
 mod unit_of;
 
 pub use host::Host;

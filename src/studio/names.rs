@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use super::text::{SECTIONS, TomlText};
+use crate::mechanism::write::{TomlText, sections};
 
 /// Sections whose keys are no names of things.
 const NAMELESS: [&str; 3] = ["ground", "outputs", "simulation"];
 
 /// Returns the sections whose keys share one name space.
 pub(super) fn named() -> impl Iterator<Item = &'static str> {
-    let sections = SECTIONS.into_iter();
+    let sections = sections().into_iter();
     sections.filter(|section| !NAMELESS.contains(section))
 }
 

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::places::WrittenText;
-use super::text::TomlText;
 use crate::mechanism::names_in;
+use crate::mechanism::write::TomlText;
+use crate::mechanism::write::WrittenText;
 
 /// Keys whose texts are words or are for the reader; they refer to nothing in the file.
 const WORDS: [&str; 21] = [

@@ -105,6 +105,14 @@ impl Mechanism {
     }
 }
 
+/// Returns the keys of a file in their order: its own texts, then its sections.
+#[cfg(feature = "page")]
+pub(super) fn root_keys() -> impl Iterator<Item = &'static str> {
+    <Root as table::Keys>::keys()
+        .into_iter()
+        .map(|key| key.name)
+}
+
 impl<'a> Context<'a> {
     /// Reads the mechanism, which is incomplete after an error; `None` in another format.
     fn mechanism(&mut self, document: &'a syntax::Table<'a>) -> Option<Mechanism> {

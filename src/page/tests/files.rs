@@ -60,7 +60,7 @@ fn estimates_keep_their_units() {
     session.drive(DriverId(0), 2.0);
     let saved = session.text().expect("the file was read");
     // 2 rad in degrees, nine digits.
-    let estimate = "estimate = [0.0, 0.0, \"114.591559*deg\"]";
+    let estimate = "estimate = [0, 0, \"114.591559026*deg\"]";
     assert!(saved.contains(estimate), "{saved}");
     let again = open(&saved);
     for (a, b) in again.pose().q.iter().zip(&session.pose().q) {

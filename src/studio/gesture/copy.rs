@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::super::number::{angle, within_turn};
+use super::super::drawn::within_turn;
 use super::super::reference::references;
-use super::super::text::{TomlText, in_braces, in_lines};
 use super::{Editing, Refusal, names, number, point};
+use crate::mechanism::write::degrees;
+use crate::mechanism::write::{TomlText, in_braces, in_lines};
 use crate::mechanism::{Body, BodyId, Joint, MarkerId, Mechanism};
 
 /// The way from a body to its copy.
@@ -238,7 +239,7 @@ fn copy_body(editing: &mut Editing, body: &Body, way: Way, frame: [f64; 3], name
     let own = ["bodies", &*body.name];
     let mut markers = Vec::new();
     let [x, y] = [frame[0], frame[1]].map(|x| editing.length(x));
-    let phi = angle(frame[2], super::ANGLE_DECIMALS);
+    let phi = degrees(frame[2], super::ANGLE_DECIMALS);
     let mut lines = vec![format!("estimate = [{x}, {y}, {phi}]")];
     for key in editing.text.keys(&own) {
         let path = [own[0], own[1], &key];

@@ -54,8 +54,8 @@ use serde_json::Value;
 
 use super::drawn::{Drawn, inside};
 use super::names::Names;
-use super::number::angle;
-use super::text::{TomlText, in_braces, in_lines};
+use crate::mechanism::write::degrees;
+use crate::mechanism::write::{TomlText, in_braces, in_lines};
 use crate::mechanism::{
     Body, Coordinate, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source, shortest,
 };
@@ -279,7 +279,7 @@ impl<'a> Editing<'a> {
 
     /// Writes an angle \[rad\].
     pub(super) fn angle(value: f64) -> String {
-        angle(super::number::within_turn(value), ANGLE_DECIMALS)
+        degrees(super::drawn::within_turn(value), ANGLE_DECIMALS)
     }
 
     /// Writes a value of a coordinate \[m or rad\].

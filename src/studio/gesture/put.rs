@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use super::super::text::TomlText;
 use super::mass::follow_mass;
 use super::{Editing, Refusal};
+use crate::mechanism::write::TomlText;
 
 /// Sets the value at `path`, or an `element` of the list there, to the TOML in `value`, or takes it away
 /// where that is `null` or empty. A word that is no TOML is taken as an expression: `2*a`.

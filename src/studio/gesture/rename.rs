@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::super::names::named;
 use super::super::reference::references;
-use super::super::text::TomlText;
 use super::{Editing, Refusal};
+use crate::mechanism::write::TomlText;
 
 /// Gives a thing, or a marker by its path `body.marker`, another name, in keys, references and
 /// expressions. Of a marker the new name is that of the marker alone, or its path on the same body.

@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use serde_json::Value;
 
+use super::super::drawn::within_turn;
 use super::super::drawn::{Drawn, inside, outside};
-use super::super::number::within_turn;
 use super::mass::followed;
 use super::{Editing, Refusal, point};
-use crate::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, constant, shortest};
+use crate::mechanism::write::NumberInUnit;
+use crate::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, shortest};
 
 /// Change of a number below which it stays as it is \[m or rad\].
 pub(super) const UNCHANGED: f64 = 1e-9;
@@ -382,30 +383,21 @@ fn set_number(
 /// Returns a number as it stands in place of an old one: in its unit. `None` in place of an
 /// expression.
 fn in_place_of(editing: &Editing, old: &str, value: f64, is_angle: bool) -> Option<String> {
-    let plain = old.trim();
-    let Some(inner) = plain
-        .strip_prefix('"')
-        .and_then(|rest| rest.strip_suffix('"'))
-    else {
-        plain.replace('_', "").parse::<f64>().ok()?;
+    let Some(own) = NumberInUnit::of(old) else {
+        let old = old.trim().replace('_', "").parse::<f64>().ok()?;
         // An angle that was zero says nothing about its unit.
-        let is_zero = plain.parse::<f64>().is_ok_and(|old| old == 0.0);
-        return Some(match is_angle && !is_zero {
+        return Some(match is_angle && old != 0.0 {
             true => format!("{}", crate::mechanism::rounded(value, 6)),
             false => editing.value(value, is_angle),
         });
     };
-    let (number, unit) = inner.split_once('*')?;
-    number.trim().parse::<f64>().ok()?;
-    let unit = unit.trim();
-    let factor = constant(unit)?;
+    let factor = own.factor();
     let decimals = match is_angle {
         true => super::ANGLE_DECIMALS,
         // As fine as lengths in metres are written.
         false => (editing.decimals as i32 + 1 + factor.log10().round() as i32).max(0) as usize,
     };
-    let number = shortest(value / factor, decimals);
-    Some(format!("\"{number}*{unit}\""))
+    Some(own.write(&shortest(value / factor, decimals)))
 }
 
 /// Returns the one parameter of an expression, with the value that gives the expression another one;

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use super::super::number::angle;
 use super::{ANGLE_DECIMALS, Editing, Refusal};
+use crate::mechanism::write::degrees;
 use crate::mechanism::{Coordinate, CoordinateKind, Mechanism, rounded};
 
 /// Usual way of an angle to each of its stops \[rad\].
@@ -94,7 +94,7 @@ fn limits(editing: &Editing, gesture: &Value, coordinate: Coordinate) -> Result<
     }
     // A limit may be turns away.
     let write = |value: f64| match is_angle {
-        true => angle(value, ANGLE_DECIMALS),
+        true => degrees(value, ANGLE_DECIMALS),
         false => editing.length(value),
     };
     let limits = [("min", min), ("max", max)].into_iter();

@@ -1,6 +1,6 @@
 //! The keys that a table of the file may have, for forms.
 
-use super::super::text::TomlText;
+use crate::mechanism::write::TomlText;
 
 /// A key of a table.
 #[derive(Debug)]
@@ -65,9 +65,9 @@ mod schema {
 
     use serde_json::Value;
 
-    use super::super::super::text::TomlText;
     use super::{Field, FieldKind};
     use crate::mechanism::Mechanism;
+    use crate::mechanism::write::TomlText;
 
     static SCHEMA: LazyLock<Value> = LazyLock::new(Mechanism::schema);
 

@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 use super::super::drawn::Drawn;
 use super::super::gesture::{self, Editing};
 use super::super::host::Host;
-use super::super::text::TomlText;
 use super::{ask, shipped, shipped_studio};
 use crate::mechanism::Source;
+use crate::mechanism::write::TomlText;
 
 fn form(host: &mut Host, names: &[&str]) -> Value {
     ask(host, &json!({ "do": "inspect", "names": names }))

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use super::super::drawn::Drawn;
 use super::super::gesture::{self, Editing, Refusal};
 use super::super::names::named;
-use super::super::text::TomlText;
 use super::{Files, act, act_warned, refusal, shipped, shipped_studio, state, studio};
+use crate::mechanism::write::TomlText;
 use crate::mechanism::{Mechanism, Severity, Source};
 
 fn drawn(text: &str, files: &Files) -> Option<Drawn> {

@@ -8,30 +8,14 @@ use std::rc::Rc;
 use toml_edit::{Document, Item, Table, TomlError};
 
 use super::places::Places;
-
-/// The sections of a mechanism file in the order in which new ones are put.
-pub(super) const SECTIONS: [&str; 13] = [
-    "parameters",
-    "ground",
-    "bodies",
-    "joints",
-    "constraints",
-    "drivers",
-    "freedoms",
-    "measures",
-    "forces",
-    "stops",
-    "friction",
-    "outputs",
-    "simulation",
-];
-/// Longest line of a table with its entries.
-const LINE: usize = 100;
+use super::section::sections;
 
 /// The text of a file that is TOML.
 #[derive(Clone, Debug)]
-pub(super) struct TomlText {
+pub(crate) struct TomlText {
     text: String,
+    /// Whether all its lines end with a carriage return, as those that are added will.
+    has_returns: bool,
     /// The parsed text, until it changes.
     document: OnceCell<Rc<Document<String>>>,
 }
@@ -50,28 +34,30 @@ impl TomlText {
     /// # Errors
     ///
     /// It is no TOML.
-    pub(super) fn new(text: impl Into<String>) -> Result<Self, TomlError> {
+    pub(crate) fn new(text: impl Into<String>) -> Result<Self, TomlError> {
         let text = text.into();
         let document = Document::parse(text.clone())?;
+        let lines = text.matches('\n').count();
         Ok(Self {
+            has_returns: lines > 0 && text.matches("\r\n").count() == lines,
             text,
             document: Rc::new(document).into(),
         })
     }
 
     /// Returns the text.
-    pub(super) fn as_str(&self) -> &str {
+    pub(crate) fn as_str(&self) -> &str {
         &self.text
     }
 
     /// Returns the text of a value.
-    pub(super) fn get(&self, path: &[&str]) -> Option<&str> {
+    pub(crate) fn get(&self, path: &[&str]) -> Option<&str> {
         let place = self.find(path)?.value;
         self.text.get(place)
     }
 
     /// Writes an item on one line: a table in braces.
-    pub(super) fn value(&self, path: &[&str]) -> String {
+    pub(crate) fn value(&self, path: &[&str]) -> String {
         if let Some(value) = self.get(path) {
             return value.to_owned();
         }
@@ -83,12 +69,12 @@ impl TomlText {
     }
 
     /// Returns the place of a value.
-    pub(super) fn place(&self, path: &[&str]) -> Option<Range<usize>> {
+    pub(crate) fn place(&self, path: &[&str]) -> Option<Range<usize>> {
         Some(self.find(path)?.value)
     }
 
     /// Returns the place of an element of a list.
-    pub(super) fn element(&self, path: &[&str], index: usize) -> Option<Range<usize>> {
+    pub(crate) fn element(&self, path: &[&str], index: usize) -> Option<Range<usize>> {
         let document = self.document();
         item_at(document.as_table(), path)?
             .as_array()?
@@ -97,7 +83,7 @@ impl TomlText {
     }
 
     /// Returns the place of a value, or of an element of the list there.
-    pub(super) fn number(&self, path: &[&str], element: Option<usize>) -> Option<Range<usize>> {
+    pub(crate) fn number(&self, path: &[&str], element: Option<usize>) -> Option<Range<usize>> {
         match element {
             Some(index) => self.element(path, index),
             None => self.place(path),
@@ -105,19 +91,19 @@ impl TomlText {
     }
 
     /// Returns whether there is an item.
-    pub(super) fn has(&self, path: &[&str]) -> bool {
+    pub(crate) fn has(&self, path: &[&str]) -> bool {
         let document = self.document();
         item_at(document.as_table(), path).is_some()
     }
 
     /// Returns whether the item at a path is a table, in braces or not.
-    pub(super) fn has_keys(&self, path: &[&str]) -> bool {
+    pub(crate) fn has_keys(&self, path: &[&str]) -> bool {
         let document = self.document();
         item_at(document.as_table(), path).is_some_and(Item::is_table_like)
     }
 
     /// Returns the keys of a table, in their order; none of what is no table.
-    pub(super) fn keys(&self, path: &[&str]) -> Vec<String> {
+    pub(crate) fn keys(&self, path: &[&str]) -> Vec<String> {
         let document = self.document();
         let table = match path {
             [] => Some(document.as_item()),
@@ -129,18 +115,23 @@ impl TomlText {
     }
 
     /// Returns all keys and texts with their places.
-    pub(super) fn places(&self) -> Places {
+    pub(crate) fn places(&self) -> Places {
         Places::of(&self.text)
     }
 
     /// Replaces a part of the text.
-    pub(super) fn replace(&mut self, place: Range<usize>, with: &str) {
-        self.text.replace_range(place, with);
+    pub(crate) fn replace(&mut self, place: Range<usize>, with: &str) {
+        if self.has_returns {
+            let lines = with.replace("\r\n", "\n").replace('\n', "\r\n");
+            self.text.replace_range(place, &lines);
+        } else {
+            self.text.replace_range(place, with);
+        }
         self.document = OnceCell::new();
     }
 
     /// Replaces parts of the text, which are in order and apart.
-    pub(super) fn replace_all(&mut self, parts: &[(Range<usize>, String)]) {
+    pub(crate) fn replace_all(&mut self, parts: &[(Range<usize>, String)]) {
         for (place, with) in parts.iter().rev() {
             self.replace(place.clone(), with);
         }
@@ -148,7 +139,7 @@ impl TomlText {
 
     /// Gives an item a value, which is TOML: the present one is replaced, a new one is added behind
     /// the others of its table. A table that does not exist is made.
-    pub(super) fn set(&mut self, path: &[&str], value: &str) {
+    pub(crate) fn set(&mut self, path: &[&str], value: &str) {
         if let Some(found) = self.find(path) {
             self.replace(found.value, value);
             return;
@@ -169,10 +160,17 @@ impl TomlText {
             }
             // A number or a text has no entries.
             Some(Item::Value(_)) => {}
-            Some(Item::Table(table)) if !(table.is_implicit() && table.span().is_none()) => {
+            Some(Item::Table(table)) if !table.is_implicit() && !table.is_dotted() => {
                 let line = self.line_after(table, owner.is_empty());
                 self.add_line(line, name, value);
             }
+            Some(Item::Table(table)) if table.is_dotted() => {
+                if let Some((line, key)) = self.dotted(table, name) {
+                    self.add_line(line, &key, value);
+                }
+            }
+            // It is there by the headers of its parts alone.
+            Some(Item::Table(_)) => self.add_section(owner, &format!("{name} = {value}")),
             _ if owner.len() == 1 || owner == ["ground", "markers"] => {
                 self.add_section(owner, &format!("{name} = {value}"));
             }
@@ -183,12 +181,26 @@ impl TomlText {
         }
     }
 
+    /// Returns the end of the last line of a table that keys with points make, and its key `name` as
+    /// these lines write it.
+    fn dotted(&self, table: &Table, name: &str) -> Option<(usize, String)> {
+        let first = table
+            .iter()
+            .next()
+            .and_then(|(first, _)| table.key(first))?;
+        let key = first.span()?.start;
+        let line = self.text[..key].rfind('\n').map_or(0, |at| at + 1);
+        let end = self.line_end(own_end(table)?);
+        Some((end, format!("{}{name}", &self.text[line..key])))
+    }
+
     /// Adds a section with its lines: behind the other ones of its kind, otherwise where the order
     /// of sections puts it.
-    pub(super) fn add_section(&mut self, path: &[&str], lines: &str) {
+    pub(crate) fn add_section(&mut self, path: &[&str], lines: &str) {
         let kind = path.first().copied().unwrap_or_default();
-        let place = SECTIONS.iter().position(|section| *section == kind);
-        let before = place.map_or(&SECTIONS[..], |place| &SECTIONS[..=place]);
+        let sections = sections();
+        let place = sections.iter().position(|section| *section == kind);
+        let before = place.map_or(&sections[..], |place| &sections[..=place]);
         let document = self.document();
         let end = before
             .iter()
@@ -204,7 +216,7 @@ impl TomlText {
     }
 
     /// Removes an item; comments above it stay, and a table that is empty then goes, too.
-    pub(super) fn remove(&mut self, path: &[&str]) {
+    pub(crate) fn remove(&mut self, path: &[&str]) {
         let document = self.document();
         let Some(item) = item_at(document.as_table(), path) else {
             return;
@@ -234,7 +246,7 @@ impl TomlText {
     }
 
     /// Removes an element of a list.
-    pub(super) fn remove_element(&mut self, path: &[&str], index: usize) {
+    pub(crate) fn remove_element(&mut self, path: &[&str], index: usize) {
         let [before, own, after] = [index.checked_sub(1), Some(index), index.checked_add(1)]
             .map(|index| self.element(path, index?));
         let cut = match (before, own, after) {
@@ -409,23 +421,6 @@ fn column(line: &str) -> Option<(usize, bool)> {
     is_entry.then_some((at, name.ends_with(' ')))
 }
 
-/// Writes entries in braces, or says that they are too long for one line with `name` in front.
-pub(super) fn in_braces(name: &str, entries: &[(String, String)]) -> Option<String> {
-    let entries: Vec<String> = (entries.iter())
-        .map(|(key, value)| format!("{key} = {value}"))
-        .collect();
-    let braces = format!("{{ {} }}", entries.join(", "));
-    (name.len() + 3 + braces.len() <= LINE).then_some(braces)
-}
-
-/// Writes entries on lines.
-pub(super) fn in_lines(entries: &[(String, String)]) -> String {
-    let lines: Vec<String> = (entries.iter())
-        .map(|(key, value)| format!("{key} = {value}"))
-        .collect();
-    lines.join("\n")
-}
-
 /// Returns an item by its path.
 fn item_at<'a>(table: &'a Table, path: &[&str]) -> Option<&'a Item> {
     let (first, rest) = path.split_first()?;
@@ -455,5 +450,53 @@ fn last_place(item: &Item) -> Option<usize> {
             inner.chain(header).max()
         }
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changed(text: &str, path: &[&str]) -> String {
+        let mut text = TomlText::new(text).expect("it is TOML");
+        text.set(path, "1");
+        TomlText::new(text.as_str()).expect("it still is TOML");
+        assert_eq!(text.get(path), Some("1"));
+        text.as_str().to_owned()
+    }
+
+    #[test]
+    fn a_table_of_parts_alone_gets_a_header() {
+        assert_eq!(
+            changed(
+                "[bodies.crank.markers]\nA = 0\n[joints]\n",
+                &["bodies", "crank", "mass"]
+            ),
+            "[bodies.crank.markers]\nA = 0\n\n[bodies.crank]\nmass = 1\n[joints]\n"
+        );
+    }
+
+    #[test]
+    fn a_table_of_keys_with_points_gets_another_one() {
+        let path = ["bodies", "crank", "mass"];
+        assert_eq!(
+            changed("bodies.crank.center = [0, 0]\nname = 0\n", &path),
+            "bodies.crank.center = [0, 0]\nbodies.crank.mass = 1\nname = 0\n"
+        );
+        assert_eq!(
+            changed("[bodies]\ncrank.markers.A = 0\n", &path),
+            "[bodies]\ncrank.markers.A = 0\ncrank.mass = 1\n"
+        );
+    }
+
+    #[test]
+    fn lines_end_as_those_of_the_text_do() {
+        assert_eq!(
+            changed(
+                "\u{feff}[bodies.crank]\r\nmarkers = 0\r\n",
+                &["bodies", "crank", "mass"]
+            ),
+            "\u{feff}[bodies.crank]\r\nmarkers = 0\r\nmass = 1\r\n"
+        );
     }
 }

@@ -7,34 +7,34 @@ use toml_parser::parser::{Event, EventKind, parse_document};
 
 /// A key as it is written: in a header, in front of a value, or between points.
 #[derive(Debug)]
-pub(super) struct WrittenKey {
+pub(crate) struct WrittenKey {
     /// Path of what it names.
-    pub(super) path: Vec<String>,
+    pub(crate) path: Vec<String>,
     /// Its place, without quotes.
-    pub(super) place: Range<usize>,
+    pub(crate) place: Range<usize>,
 }
 
 /// A text among the values.
 #[derive(Debug)]
-pub(super) struct WrittenText {
+pub(crate) struct WrittenText {
     /// Path of the value; of an entry of a list, that of the list.
-    pub(super) path: Vec<String>,
+    pub(crate) path: Vec<String>,
     /// Its place, with its quotes.
-    pub(super) place: Range<usize>,
+    pub(crate) place: Range<usize>,
     /// Its place, without quotes.
-    pub(super) inside: Range<usize>,
+    pub(crate) inside: Range<usize>,
 }
 
 /// Keys and texts in the order of the file.
 #[derive(Debug, Default)]
-pub(super) struct Places {
-    pub(super) keys: Vec<WrittenKey>,
-    pub(super) texts: Vec<WrittenText>,
+pub(crate) struct Places {
+    pub(crate) keys: Vec<WrittenKey>,
+    pub(crate) texts: Vec<WrittenText>,
 }
 
 impl Places {
     /// Finds the keys and texts of a file that is TOML.
-    pub(super) fn of(text: &str) -> Self {
+    pub(crate) fn of(text: &str) -> Self {
         let tokens = Source::new(text).lex().into_vec();
         let mut events: Vec<Event> = Vec::new();
         parse_document(&tokens, &mut events, &mut ());
