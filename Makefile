@@ -45,7 +45,7 @@ PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
 .PHONY: help demo test bench fuzz attack lint build module setup install uninstall refresh lock clean \
     runtimes licences advisories wheel dist test-platforms test-install page test-page studio test-studio \
-    editor gallery docs
+    editor check-scripts gallery docs
 .NOTPARALLEL:
 
 help: ## show this list
@@ -138,6 +138,9 @@ test-page: setup build page ## move mechanisms on pages in a headless browser (C
 
 editor: ## build the studio's text editor (npm)
 	@bash scripts/editor.sh
+
+check-scripts: ## check that scripts send the solver messages that it knows (TypeScript, by npx)
+	@npx --yes --package typescript@7.0.2 tsc --project page/tsconfig.json
 
 gallery: build page ## write pages of all mechanisms, to be moved by hand, into target/gallery
 	@python3 scripts/gallery.py

@@ -1,3 +1,4 @@
+// @ts-check
 // A chart of variables over time or over a driver, with a cursor at the present pose, and one that
 // follows the pointer.
 
@@ -13,6 +14,7 @@ const MOST = 6;
 const LONG = 12;
 
 export class Chart {
+  /** @param {import("./live.js").Live} live */
   constructor(live, find) {
     this.live = live;
     this.place = find(".chart");

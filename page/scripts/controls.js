@@ -63,6 +63,12 @@ export function showPicture(element, svg) {
  * while the value changes, and with `done` at the end.
  */
 export class Row {
+  /**
+   * @param {Element} parent
+   * @param {any} item
+   * @param {{ low: number, high: number, low_end?: string, high_end?: string, turns?: boolean }} ends
+   * @param {(value: number, done: boolean) => void} change
+   */
   constructor(parent, item, { low, high, low_end, high_end, turns = false }, change) {
     this.item = item;
     this.turns = turns;

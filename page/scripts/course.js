@@ -1,3 +1,4 @@
+// @ts-check
 // The path of a point that was clicked, with its speed, and poses laid over each other.
 
 import { say, shown } from "./controls.js";
@@ -8,6 +9,7 @@ const ON_PATH = 241;
 const POSES = 13;
 
 export class Course {
+  /** @param {import("./live.js").Live} live */
   constructor(live, find) {
     this.live = live;
     this.poses = find(".poses");
@@ -17,7 +19,10 @@ export class Course {
     this.told.querySelector("button").addEventListener("click", () => this.trace({ body: null }));
   }
 
-  /** Traces the point `grip` of a body, in its frame; none where the body is null. */
+  /**
+   * Traces the point `grip` of a body, in its frame; none where the body is null.
+   * @param {{ body: number | null, grip?: [number, number] }} point
+   */
   trace({ body, grip }) {
     if (body === null && this.body === null) {
       return;

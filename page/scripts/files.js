@@ -1,3 +1,4 @@
+// @ts-check
 // Saving: the mechanism's file, pictures, values.
 
 import { csv } from "./chart.js";
@@ -12,7 +13,10 @@ export function save(name, kind, content) {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** Connects the buttons of class `save`, whose values name the kinds of files. */
+/**
+ * Connects the buttons of class `save`, whose values name the kinds of files.
+ * @param {import("./live.js").Live} live
+ */
 export function connectSaving(root, live) {
   const savers = {
     toml: () => {

@@ -1,10 +1,14 @@
+// @ts-check
 // A hand that pulls bodies, by mouse or finger; by a spring while freedoms move. The wheel zooms, and
 // what is zoomed is moved by its bare sheet. A click shows the path of the point there.
 
 // Way of the pointer up to which a press is a click [pixels].
 const CLICK = 4;
 
-/** Lets the pointer pull the bodies of a picture; `live` solves and draws. */
+/**
+ * Lets the pointer pull the bodies of a picture; `live` solves and draws.
+ * @param {import("./live.js").Live} live
+ */
 export function giveHand(paper, live) {
   let held = null;
   let waiting = false;

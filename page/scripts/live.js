@@ -1,3 +1,4 @@
+// @ts-check
 // A mechanism in a page: connects the solver with picture, controls, chart and files.
 
 import { Chart } from "./chart.js";
@@ -31,7 +32,10 @@ export class Live {
 
   // -- the solver ----------------------------------------------------------------------------
 
-  /** Asks the solver; undefined if it has failed, which the page then shows. */
+  /**
+   * Asks the solver; undefined if it has failed, which the page then shows.
+   * @param {import("./messages").PageRequest} request
+   */
   ask(request) {
     try {
       const answer = this.solver.ask(request);
@@ -45,7 +49,10 @@ export class Live {
     }
   }
 
-  /** Asks for a move, shows its outcome and draws; true if the mechanism is where it was to go. */
+  /**
+   * Asks for a move, shows its outcome and draws; true if the mechanism is where it was to go.
+   * @param {import("./messages").PageRequest} request
+   */
   move(request) {
     const answer = this.ask(request);
     if (!answer) {
@@ -277,14 +284,20 @@ export class Live {
     this.find(".rate-part").hidden = place.childElementCount === 0;
   }
 
-  /** Gives speeds or loads, which move nothing. */
+  /**
+   * Gives speeds or loads, which move nothing.
+   * @param {import("./messages").PageRequest} request
+   */
   give(request) {
     this.ask(request);
     this.draw();
     this.chart.draw();
   }
 
-  /** A slider moves: solves at once, and draws anew what parameters change. */
+  /**
+   * A slider moves: solves at once, and draws anew what parameters change.
+   * @param {import("./messages").PageRequest & { do: "drive" | "set" }} request
+   */
   slide(request, done) {
     if (!this.sliding) {
       this.play.stop();
@@ -326,6 +339,7 @@ export class Live {
     this.chart.draw();
   }
 
+  /** @param {any} outcome */
   tellOutcome({ outcome, message, at, assembles }) {
     this.picture.mark(at ?? null);
     const line = this.find(".message");
@@ -345,6 +359,7 @@ export class Live {
   connect() {
     const { find, root } = this;
     const click = (selector, act) => find(selector).addEventListener("click", act);
+    /** @param {"undo" | "redo" | "reset"} word */
     const step = (word) => () => {
       this.play.stop();
       const answer = this.ask({ do: word });
@@ -366,7 +381,7 @@ export class Live {
     click(".apply", () => this.open({ ...this.file, text: find(".text").value }, ".file-problems", true));
     click(".anew", () => {
       const request = this.refused;
-      if (request && this.move({ ...request, anew: true })) {
+      if (request?.do === "set" && this.move({ ...request, anew: true })) {
         this.redraw(false);
         this.chart.draw();
       }

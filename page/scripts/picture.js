@@ -118,7 +118,10 @@ export class Picture {
     this.zoomed = true;
   }
 
-  /** Returns the place on the sheet of a point of the screen. */
+  /**
+   * Returns the place on the sheet of a point of the screen.
+   * @returns {[number, number]}
+   */
   onSheet(x, y) {
     const point = new DOMPoint(x, y).matrixTransform(this.svg.getScreenCTM().inverse());
     return [point.x, point.y];

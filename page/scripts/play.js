@@ -1,3 +1,4 @@
+// @ts-check
 // Motion by itself: time where motions are prescribed or freedoms move, otherwise a driver.
 
 import { moveOf, offerMoves } from "./controls.js";
@@ -7,7 +8,10 @@ import { moveOf, offerMoves } from "./controls.js";
 const FASTEST = 4 * Math.PI;
 
 export class Play {
-  /** `live` solves and draws; `find` returns an element of the page. */
+  /**
+   * `live` solves and draws; `find` returns an element of the page.
+   * @param {import("./live.js").Live} live
+   */
   constructor(live, find) {
     this.live = live;
     this.button = find(".play");

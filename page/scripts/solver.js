@@ -1,3 +1,4 @@
+// @ts-check
 // The solver, compiled to WebAssembly: requests and answers in JSON, numbers without copying.
 
 /** The solver has ended by a defect of its own; its instance is not to be used any more. */
@@ -24,6 +25,7 @@ export function unpack(id) {
 }
 
 export class Solver {
+  /** @param {WebAssembly.Module} module */
   constructor(module) {
     // A library in the studio's solver asks for random numbers, which archives do not need.
     const imports = {};
@@ -33,10 +35,14 @@ export class Solver {
         throw new Error(`the solver has no ${name}`);
       };
     }
+    /** @type {any} */
     this.exports = new WebAssembly.Instance(module, imports).exports;
   }
 
-  /** Sends a request and returns its answer. */
+  /**
+   * Sends a request and returns its answer.
+   * @param {import("./messages").PageRequest | import("./messages").StudioRequest | import("./messages").ExportRequest} request
+   */
   ask(request) {
     const bytes = new TextEncoder().encode(JSON.stringify(request));
     return this.guard(() => {

@@ -1,43 +1,20 @@
 //! Requests in JSON, and their answers.
 
+use serde::Deserialize as _;
 use serde_json::{Value, json};
 
 use super::along::Over;
 use super::files::Files;
 use super::outcome::Outcome;
+use super::request::Request;
 use super::session::Session;
 use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 
-/// A session that is asked in JSON.
-///
-/// | `do` | further keys | answer |
-/// |---|---|---|
-/// | `open` | `name`, `text`, `files` (names with contents), `kept` (undo returns) | `page`, or `problems` |
-/// | `picture` | | the parts of the moving picture |
-/// | `redraw` | `keep` (the scale) | `picture`, `page` |
-/// | `drive` | `driver`, `value` | an outcome |
-/// | `speed` | `driver`, `velocity`, `acceleration` | |
-/// | `load` | `input`, `value` | |
-/// | `time` | `value` | an outcome |
-/// | `set` | `parameter`, `value`, `anew` | an outcome |
-/// | `grab` | `body`, `at` (in the picture) | `grip` |
-/// | `drag` | `body`, `grip`, `at` (in the picture) | an outcome |
-/// | `hold` | `body`, `grip`, `at` (in the picture) | an outcome |
-/// | `let_go` | | |
-/// | `keep`, `reset` | | `done` |
-/// | `undo`, `redo` | | `done`; of another file `page` and `file` |
-/// | `assemblies` | | `pictures`, `complete` |
-/// | `choose` | `index` | an outcome |
-/// | `chart` | `driver` (time without one), `variables`, `samples` | `x`, `y`, `events` |
-/// | `trace` | `body`, `grip`; no point without them | `done` |
-/// | `path` | `driver` (time without one), `samples` | `points` of the traced point, in the picture |
-/// | `poses` | `driver` (time without one), `samples` | `poses`, lists of the places of the parts |
-/// | `diagram` | | `svg` |
-/// | `text` | `parameters` (without the pose) | `text` |
-///
-/// Values are SI. An outcome has `outcome` (`reached`, `stopped`, `refused`), and unless reached
-/// `message`, `at` (in the picture) and `assembles`. A request that makes no sense is answered by
-/// `error`.
+/// Answer to a request that needs a mechanism.
+const NONE: &str = "no mechanism is open";
+
+/// A session that is asked in JSON: by the requests in `src/page/request.rs`, which
+/// `page/scripts/messages.d.ts` tells the scripts.
 #[derive(Default)]
 pub struct Host {
     files: Files,
@@ -45,15 +22,20 @@ pub struct Host {
 }
 
 impl Host {
-    /// Answers a request.
+    /// Answers a request, which is JSON.
     pub fn answer(&mut self, request: &str) -> Value {
-        let request: Value = match serde_json::from_str(request) {
-            Ok(request) => request,
-            Err(error) => return json!({ "error": error.to_string() }),
-        };
-        let answer = self.act(&request);
+        match serde_json::from_str(request) {
+            Ok(request) => self.answer_to(&request),
+            Err(error) => json!({ "error": error.to_string() }),
+        }
+    }
+
+    /// Answers a request.
+    pub fn answer_to(&mut self, request: &Value) -> Value {
+        let request = Request::deserialize(request).map_err(|error| error.to_string());
+        let answer = request.and_then(|request| self.act(request));
         self.write_frame();
-        answer.unwrap_or_else(|| json!({ "error": format!("cannot do {request}") }))
+        answer.unwrap_or_else(|error| json!({ "error": error }))
     }
 
     /// Moves a driver and writes the frame; returns whether the value was reached.
@@ -78,128 +60,144 @@ impl Host {
         }
     }
 
-    fn act(&mut self, request: &Value) -> Option<Value> {
-        let word = request["do"].as_str()?;
-        match word {
-            "open" => return self.open(request),
-            "undo" => return Some(self.files.undo()),
-            "redo" => return Some(self.files.redo()),
-            "keep" | "reset" | "choose" => self.files.change(),
-            _ => {}
-        }
-        let session = self.files.now.as_mut()?;
-        let number = |key: &str| request[key].as_f64();
-        let index = |key: &str| usize::try_from(request[key].as_u64()?).ok();
-        let pair = |key: &str| Some([request[key][0].as_f64()?, request[key][1].as_f64()?]);
-        let flag = |key: &str| request[key].as_bool().unwrap_or(false);
-        let point = |session: &Session| {
-            let [x, y] = pair("at")?;
-            let scale = session.picture.scale();
-            Some([x / scale, -y / scale])
-        };
-        let body = |session: &Session| {
-            let body = index("body")?;
-            (body < session.mechanism().bodies.len()).then_some(BodyId(body))
-        };
-        let over = match index("driver") {
-            Some(driver) => Over::Driver(DriverId(driver)),
-            None => Over::Time,
-        };
-        let outcome = match word {
-            "drive" => session.drive(DriverId(index("driver")?), number("value")?),
-            "time" => session.go_to(number("value")?),
-            "set" => {
-                let parameter = ParameterId(index("parameter")?);
-                session.set(parameter, number("value")?, flag("anew"))
+    fn act(&mut self, request: Request) -> Result<Value, String> {
+        let session = self.files.now.as_mut().ok_or(NONE);
+        Ok(match request {
+            Request::Open {
+                name,
+                text,
+                files,
+                kept,
+            } => self.open(Source::new(name, text).with_files(files), kept),
+            Request::Picture {} => session?.picture(),
+            Request::Redraw { keep } => {
+                let session = session?;
+                session.redraw(keep);
+                json!({ "picture": session.picture(), "page": session.description() })
             }
-            "drag" => {
-                let (body, target) = (body(session)?, point(session)?);
-                session.drag(body, pair("grip")?, target)
+            Request::Drive { driver, value } => {
+                moved(session?, |session| session.drive(DriverId(driver), value))
             }
-            "hold" => {
-                let (body, hand) = (body(session)?, point(session)?);
-                session.hold(body, pair("grip")?, hand)
+            Request::Speed {
+                driver,
+                velocity,
+                acceleration,
+            } => {
+                session?.set_speed(DriverId(driver), velocity, acceleration);
+                json!({})
             }
-            "choose" => session.choose(index("index")?),
-            _ => {
-                return Some(match word {
-                    "picture" => session.picture(),
-                    "redraw" => {
-                        session.redraw(flag("keep"));
-                        json!({ "picture": session.picture(), "page": session.description() })
-                    }
-                    "speed" => {
-                        let driver = DriverId(index("driver")?);
-                        session.set_speed(driver, number("velocity")?, number("acceleration")?);
-                        json!({})
-                    }
-                    "load" => {
-                        session.set_load(index("input")?, number("value")?);
-                        json!({})
-                    }
-                    "let_go" => {
-                        session.let_go();
-                        json!({})
-                    }
-                    "grab" => json!({ "grip": session.grip(body(session)?, point(session)?) }),
-                    "keep" => {
-                        session.keep();
-                        json!({ "done": true })
-                    }
-                    "reset" => {
-                        session.reset();
-                        json!({ "done": true })
-                    }
-                    "assemblies" => session.assemblies(),
-                    "chart" => {
-                        let variables = request["variables"].as_array()?.iter();
-                        let variables = variables.map(|v| usize::try_from(v.as_u64()?).ok());
-                        let variables: Vec<usize> = variables.collect::<Option<_>>()?;
-                        session.chart(over, &variables, index("samples")?)
-                    }
-                    "trace" => {
-                        session.trace(body(session).zip(pair("grip")));
-                        json!({ "done": true })
-                    }
-                    "path" => json!({ "points": session.path(over, index("samples")?) }),
-                    "poses" => json!({ "poses": session.poses(over, index("samples")?) }),
-                    "diagram" => json!({ "svg": session.diagram() }),
-                    "text" => {
-                        let text = if flag("parameters") {
-                            session.text_with_parameters()
-                        } else {
-                            session.text()
-                        };
-                        match text {
-                            Ok(text) => json!({ "text": text }),
-                            Err(error) => json!({ "error": error.to_string() }),
-                        }
-                    }
-                    _ => return None,
-                });
+            Request::Load { input, value } => {
+                session?.set_load(input, value);
+                json!({})
             }
-        };
-        Some(outcome.answer(|at| session.picture.place(at)))
+            Request::Time { value } => moved(session?, |session| session.go_to(value)),
+            Request::Set {
+                parameter,
+                value,
+                anew,
+            } => moved(session?, |session| {
+                session.set(ParameterId(parameter), value, anew)
+            }),
+            Request::Grab { body, at } => {
+                let session = session?;
+                let body = known(session, body)?;
+                json!({ "grip": session.grip(body, global(session, at)) })
+            }
+            Request::Drag { body, grip, at } => {
+                let session = session?;
+                let (body, target) = (known(session, body)?, global(session, at));
+                moved(session, |session| session.drag(body, grip, target))
+            }
+            Request::Hold { body, grip, at } => {
+                let session = session?;
+                let (body, hand) = (known(session, body)?, global(session, at));
+                moved(session, |session| session.hold(body, grip, hand))
+            }
+            Request::LetGo {} => {
+                session?.let_go();
+                json!({})
+            }
+            Request::Keep {} => {
+                self.changed()?.keep();
+                json!({ "done": true })
+            }
+            Request::Reset {} => {
+                self.changed()?.reset();
+                json!({ "done": true })
+            }
+            Request::Undo {} => self.files.undo(),
+            Request::Redo {} => self.files.redo(),
+            Request::Assemblies {} => session?.assemblies(),
+            Request::Choose { index } => moved(self.changed()?, |session| session.choose(index)),
+            Request::Chart {
+                driver,
+                variables,
+                samples,
+            } => session?.chart(over(driver), &variables, samples),
+            Request::Trace { body, grip } => {
+                let session = session?;
+                let body = body.and_then(|body| known(session, body).ok());
+                session.trace(body.zip(grip));
+                json!({ "done": true })
+            }
+            Request::Path { driver, samples } => {
+                json!({ "points": session?.path(over(driver), samples) })
+            }
+            Request::Poses { driver, samples } => {
+                json!({ "poses": session?.poses(over(driver), samples) })
+            }
+            Request::Diagram {} => json!({ "svg": session?.diagram() }),
+            Request::Text { parameters } => {
+                let session = session?;
+                let text = if parameters {
+                    session.text_with_parameters()
+                } else {
+                    session.text()
+                };
+                json!({ "text": text.map_err(|error| error.to_string())? })
+            }
+        })
     }
 
-    fn open(&mut self, request: &Value) -> Option<Value> {
-        let files = request["files"].as_array().map_or(&[][..], Vec::as_slice);
-        let files = files.iter().map(|file| {
-            let [name, text] = [file[0].as_str()?, file[1].as_str()?];
-            Some((name.to_owned(), text.to_owned()))
-        });
-        let files: Vec<(String, String)> = files.collect::<Option<_>>()?;
-        let (name, text) = (request["name"].as_str()?, request["text"].as_str()?);
-        let source = Source::new(name, text).with_files(files);
-        Some(match Session::open(source) {
+    /// Returns the session, whose state is to change: undo no longer returns to another file.
+    fn changed(&mut self) -> Result<&mut Session, &'static str> {
+        self.files.change();
+        self.files.now.as_mut().ok_or(NONE)
+    }
+
+    fn open(&mut self, source: Source, kept: bool) -> Value {
+        match Session::open(source) {
             Ok(session) => {
                 let page = session.description();
-                self.files
-                    .open(session, request["kept"].as_bool().unwrap_or(false));
+                self.files.open(session, kept);
                 json!({ "page": page })
             }
             // The mechanism that was open stays.
             Err(problems) => json!({ "problems": problems }),
-        })
+        }
     }
+}
+
+/// Returns the driver along which poses are taken, or time.
+fn over(driver: Option<usize>) -> Over {
+    driver.map_or(Over::Time, |driver| Over::Driver(DriverId(driver)))
+}
+
+/// Returns a body of the mechanism.
+fn known(session: &Session, body: usize) -> Result<BodyId, String> {
+    let is_there = body < session.mechanism().bodies.len();
+    let body = is_there.then_some(BodyId(body));
+    body.ok_or_else(|| "the mechanism has no such body".to_owned())
+}
+
+/// Returns the global point \[m\] at a place of the picture.
+fn global(session: &Session, [x, y]: [f64; 2]) -> [f64; 2] {
+    let scale = session.picture.scale();
+    [x / scale, -y / scale]
+}
+
+/// Moves the mechanism and tells the outcome.
+fn moved(session: &mut Session, act: impl FnOnce(&mut Session) -> Outcome) -> Value {
+    let outcome = act(session);
+    outcome.answer(|at| session.picture.place(at))
 }

@@ -25,7 +25,7 @@
 //! | `frame` | the numbers of one picture |
 //! | `edit` | the mechanism's file with other values |
 //! | `files` | the files opened one after the other, for undo |
-//! | `host` | [`Host`]: requests in JSON |
+//! | `request`, `host` | requests in JSON, and [`Host`], which answers them |
 
 mod along;
 mod assemblies;
@@ -41,6 +41,7 @@ mod held;
 mod host;
 mod outcome;
 mod ranges;
+mod request;
 mod session;
 mod spring;
 #[cfg(test)]

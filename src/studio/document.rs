@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::drawn::Drawn;
 use super::gesture::{self, Editing, Refusal};
+use super::request::Gesture;
 use super::sketch::sketch;
 use super::status::{State, sentence};
 use crate::mechanism::write::TomlText;
@@ -84,10 +85,10 @@ impl Document {
     /// # Errors
     ///
     /// The reason why it cannot be done.
-    pub(super) fn gesture(&mut self, gesture: &Value) -> Result<(), Refusal> {
-        let (text, drawn) = self.tried(gesture)?;
+    pub(super) fn gesture(&mut self, gesture: &Gesture, decimals: usize) -> Result<(), Refusal> {
+        let (text, drawn) = self.tried(gesture, decimals)?;
         let text = if gesture::moves(gesture) {
-            let mut editing = Editing::new(text, &drawn, &self.files, decimals(gesture));
+            let mut editing = Editing::new(text, &drawn, &self.files, decimals);
             gesture::settle(&mut editing);
             editing.text
         } else {
@@ -106,8 +107,13 @@ impl Document {
     /// # Errors
     ///
     /// The reason why it cannot be done.
-    pub(super) fn preview(&self, gesture: &Value, scale: f64) -> Result<Value, Refusal> {
-        let (_, drawn) = self.tried(gesture)?;
+    pub(super) fn preview(
+        &self,
+        gesture: &Gesture,
+        decimals: usize,
+        scale: f64,
+    ) -> Result<Value, Refusal> {
+        let (_, drawn) = self.tried(gesture, decimals)?;
         Ok(glimpse(&drawn, scale))
     }
 
@@ -124,8 +130,8 @@ impl Document {
         Ok(Editing::new(text, drawn, &self.files, decimals))
     }
 
-    fn tried(&self, gesture: &Value) -> Result<(TomlText, Drawn), Refusal> {
-        let mut editing = self.editing(decimals(gesture))?;
+    fn tried(&self, gesture: &Gesture, decimals: usize) -> Result<(TomlText, Drawn), Refusal> {
+        let mut editing = self.editing(decimals)?;
         gesture::act(gesture, &mut editing)?;
         let text = editing.text;
         let (drawn, problems) = Drawn::read(&self.source(text.as_str()));
@@ -251,10 +257,4 @@ fn picture(drawn: &Drawn, scale: f64, labelled: bool) -> Option<Value> {
     let mut description = picture.description();
     description["places"] = json!(places);
     Some(description)
-}
-
-/// Returns the decimals of lengths of a gesture: as fine as the sheet shows.
-fn decimals(gesture: &Value) -> usize {
-    let decimals = gesture["decimals"].as_u64().unwrap_or(4);
-    usize::try_from(decimals).unwrap_or(4).min(9)
 }

@@ -1,29 +1,22 @@
 //! Requests in JSON, and their answers.
 
+use serde::Deserialize as _;
 use serde_json::{Value, json};
 
 use super::document::Document;
 use super::gesture::Refusal;
 use super::inspect::inspect;
+use super::request::Request;
 use crate::page;
 
-/// A studio that is asked in JSON.
-///
-/// | `do` | further keys | answer |
-/// |---|---|---|
-/// | `begin` | `name`, `text`, `files` (names with contents) | a view |
-/// | `type` | `text`, `joined` (to the change before) | a view |
-/// | `gesture` | `gesture`, `keep` (otherwise it is only shown) | a view, or `refused` |
-/// | `text_undo`, `text_redo` | | a view |
-/// | `view` | | a view |
-/// | `inspect` | `names` of a thing, paths of a point's markers, or none | a form, or `refused` |
-///
-/// Each may have the `scale` of the picture \[units per metre\]. A view has `text`, `problems`,
-/// `is_stale` (the drawing is of an earlier text), `status`, `sketch`, `picture`, `can_undo`,
-/// `can_redo`; one that is only shown has status and picture. A refusal has `message`, or asks by
-/// `parameter`, `formula` and `value`. A form has `title`, `kind`, `rows` and `actions`. All other
-/// requests are those of
-/// [`page::Host`].
+/// Scale of a picture for which no one has asked \[units per metre\].
+const USUAL_SCALE: f64 = 1_000.0;
+/// Decimals of lengths for which no one has asked, and most decimals.
+const USUAL_DECIMALS: usize = 4;
+const MOST_DECIMALS: usize = 9;
+
+/// A studio that is asked in JSON: by the requests in `src/studio/request.rs`, and by those of
+/// [`page::Host`]. `page/scripts/messages.d.ts` tells them to the scripts.
 #[derive(Default)]
 pub struct Host {
     document: Document,
@@ -31,59 +24,74 @@ pub struct Host {
 }
 
 impl Host {
-    /// Answers a request.
+    /// Answers a request, which is JSON.
     pub fn answer(&mut self, request: &str) -> Value {
-        let asked: Value = match serde_json::from_str(request) {
-            Ok(asked) => asked,
-            Err(error) => return json!({ "error": error.to_string() }),
-        };
-        let scale = asked["scale"].as_f64().filter(|scale| *scale > 0.0);
-        let scale = scale.unwrap_or(1_000.0);
-        match asked["do"].as_str() {
-            Some("begin") => {
-                let files = asked["files"].as_array().map_or(&[][..], Vec::as_slice);
-                let files = files.iter().filter_map(|file| {
-                    Some((file[0].as_str()?.to_owned(), file[1].as_str()?.to_owned()))
-                });
-                let text = |key: &str| asked[key].as_str().unwrap_or_default();
-                self.document = Document::new(text("name"), text("text"), files.collect());
-            }
-            Some("type") => {
-                let text = asked["text"].as_str().unwrap_or_default();
-                let joined = asked["joined"].as_bool().unwrap_or(false);
-                self.document.type_text(text, joined);
-            }
-            Some("gesture") => {
-                let gesture = &asked["gesture"];
-                if asked["keep"].as_bool() == Some(true) {
-                    if let Err(refusal) = self.document.gesture(gesture) {
-                        return refused(&refusal);
-                    }
-                } else {
-                    return match self.document.preview(gesture, scale) {
-                        Ok(view) => view,
-                        Err(refusal) => refused(&refusal),
-                    };
-                }
-            }
-            Some("text_undo") => {
-                self.document.undo();
-            }
-            Some("text_redo") => {
-                self.document.redo();
-            }
-            Some("view") => {}
-            Some("inspect") => {
-                let names = asked["names"].as_array().map_or(&[][..], Vec::as_slice);
-                let names: Vec<&str> = names.iter().filter_map(Value::as_str).collect();
-                return match inspect(&self.document, &names) {
-                    Ok(form) => form,
-                    Err(refusal) => refused(&refusal),
-                };
-            }
-            _ => return self.page.answer(request),
+        match serde_json::from_str(request) {
+            Ok(request) => self.answer_to(&request),
+            Err(error) => json!({ "error": error.to_string() }),
         }
-        self.document.view(scale)
+    }
+
+    /// Answers a request.
+    pub fn answer_to(&mut self, request: &Value) -> Value {
+        match Request::deserialize(request) {
+            Ok(Request::OfPage) => self.page.answer_to(request),
+            Ok(own) => {
+                let answer = self.act(own);
+                answer.unwrap_or_else(|refusal| refused(&refusal))
+            }
+            Err(error) => json!({ "error": error.to_string() }),
+        }
+    }
+
+    fn act(&mut self, request: Request) -> Result<Value, Refusal> {
+        let scale = match request {
+            Request::Begin {
+                name,
+                text,
+                files,
+                scale,
+            } => {
+                self.document = Document::new(&name, &text, files);
+                scale
+            }
+            Request::Type {
+                text,
+                joined,
+                scale,
+            } => {
+                self.document.type_text(&text, joined);
+                scale
+            }
+            Request::Gesture {
+                gesture,
+                keep,
+                decimals,
+                scale,
+            } => {
+                let decimals = decimals.unwrap_or(USUAL_DECIMALS).min(MOST_DECIMALS);
+                if !keep {
+                    return self.document.preview(&gesture, decimals, drawn_at(scale));
+                }
+                self.document.gesture(&gesture, decimals)?;
+                scale
+            }
+            Request::TextUndo { scale } => {
+                self.document.undo();
+                scale
+            }
+            Request::TextRedo { scale } => {
+                self.document.redo();
+                scale
+            }
+            Request::View { scale } => scale,
+            Request::Inspect { names } => {
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                return inspect(&self.document, &names);
+            }
+            Request::OfPage => None,
+        };
+        Ok(self.document.view(drawn_at(scale)))
     }
 
     /// Moves a driver; see [`page::Host::drive`].
@@ -115,4 +123,9 @@ fn refused(refusal: &Refusal) -> Value {
             "refused": { "parameter": parameter, "formula": formula, "value": value },
         }),
     }
+}
+
+/// Returns the scale at which a picture is drawn.
+fn drawn_at(scale: Option<f64>) -> f64 {
+    scale.filter(|scale| *scale > 0.0).unwrap_or(USUAL_SCALE)
 }

@@ -16,7 +16,7 @@
 //! | `inspect` | what is selected, as a form |
 //! | `status` | what a half-done drawing lacks |
 //! | `document` | a file with its undo |
-//! | `host` | [`Host`]: requests in JSON |
+//! | `request`, `host` | requests and gestures, and [`Host`], which answers them |
 
 mod document;
 mod drawn;
@@ -25,6 +25,7 @@ mod host;
 mod inspect;
 mod names;
 mod reference;
+mod request;
 mod sketch;
 mod status;
 #[cfg(test)]

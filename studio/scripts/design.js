@@ -1,3 +1,4 @@
+// @ts-check
 // Design: the pointer and the keys draw, select and move; the solver answers with text and picture.
 
 import { add, shown } from "./controls.js";
@@ -258,7 +259,7 @@ export class Design {
   async click(found, event = {}) {
     const tool = TOOLS[this.tool];
     if (this.tool === "select") {
-      this.studio.select(this.thing(found, event));
+      this.studio.select(this.thing(found));
       return;
     }
     const first = this.found[0];
@@ -356,9 +357,11 @@ export class Design {
     }
   }
 
+  /** @returns {import("../../page/scripts/messages").Gesture & { kind: "join" | "shift" }} */
   gestureTo(found) {
     const { drag } = this;
     const onto = drag.point && found.point ? found.point.markers[0] : null;
+    /** @type {[number, number]} */
     const by = [found.at[0] - drag.from[0], found.at[1] - drag.from[1]];
     return onto ? { kind: "join", marker: drag.markers[0], onto } : { kind: "shift", markers: drag.markers, by };
   }
@@ -377,7 +380,10 @@ export class Design {
     this.mark();
   }
 
-  /** Does a gesture that changes a length; asks whether a parameter changes with it. */
+  /**
+   * Does a gesture that changes a length; asks whether a parameter changes with it.
+   * @param {import("../../page/scripts/messages").Gesture & { kind: "join" | "shift" | "length" }} gesture
+   */
   async change(gesture) {
     let answer = this.studio.gesture(gesture, false);
     while (answer.refused?.parameter) {
@@ -494,6 +500,7 @@ export class Design {
     }
   }
 
+  /** @param {any} found */
   markFound({ at, point, body, guides }) {
     const { sheet } = this;
     for (const from of guides) {

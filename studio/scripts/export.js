@@ -1,3 +1,4 @@
+// @ts-check
 // The ways out of the studio: the FMU, the file, pictures, a link.
 
 import { add, say, shown } from "./controls.js";

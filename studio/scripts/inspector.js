@@ -1,3 +1,4 @@
+// @ts-check
 // The numbers of what is selected, and what can be done with it.
 
 import { add, say } from "./controls.js";
@@ -47,7 +48,7 @@ export class Inspector {
   related(place) {
     const { selection, view } = this.studio;
     const { joints, drivers, forces, stops, parameters } = view.sketch ?? {};
-    const names = (list, fits = () => true) => (list ?? []).filter(fits).map(({ name }) => name);
+    const names = (list, fits = (_) => true) => (list ?? []).filter(fits).map(({ name }) => name);
     const groups = selection
       ? [names(joints, (joint) => selection.joints?.includes(joint.name)), names(drivers, (driver) => driver.markers.some((marker) => selection.markers?.includes(marker)))]
       : [names(drivers), names(forces), names(stops), names(parameters)];

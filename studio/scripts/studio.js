@@ -1,3 +1,4 @@
+// @ts-check
 // The studio: text and drawing of one mechanism, side by side, and the way out.
 
 import { Background } from "./background.js";
@@ -34,6 +35,10 @@ class Studio {
     this.root = root;
     this.module = module;
     this.parts = parts;
+    /** @type {any} */
+    this.schema = null;
+    /** @type {Disk | null} */
+    this.disk = null;
     const rank = ({ name }) => (EVERYDAY.includes(name) ? EVERYDAY.indexOf(name) : EVERYDAY.length);
     this.templates = [...templates].sort((a, b) => rank(a) - rank(b));
     this.find = (selector) => root.querySelector(selector);
@@ -103,7 +108,10 @@ class Studio {
 
   // -- the solver ----------------------------------------------------------------------------
 
-  /** Asks the solver; a failure of it makes a new one, with the text as it was. */
+  /**
+   * Asks the solver; a failure of it makes a new one, with the text as it was.
+   * @param {import("../../page/scripts/messages").StudioRequest | import("../../page/scripts/messages").ExportRequest} request
+   */
   ask(request) {
     try {
       return this.solver.ask(request);
@@ -146,10 +154,13 @@ class Studio {
     return answer === "leave";
   }
 
-  /** Does a gesture; shows its outcome, and says why not. */
+  /**
+   * Does a gesture; shows its outcome, and says why not.
+   * @param {import("../../page/scripts/messages").Gesture} gesture
+   */
   gesture(gesture, tells = true) {
     const { scale, decimals } = this.sheet;
-    const answer = this.ask({ do: "gesture", keep: true, scale, gesture: { decimals, ...gesture } });
+    const answer = this.ask({ do: "gesture", keep: true, scale, decimals, gesture });
     if (answer.refused) {
       if (tells && answer.refused.message) {
         this.say(answer.refused.message);
@@ -182,10 +193,13 @@ class Studio {
     }
   }
 
-  /** Shows what a gesture would draw. */
+  /**
+   * Shows what a gesture would draw.
+   * @param {import("../../page/scripts/messages").Gesture} gesture
+   */
   preview(gesture) {
     const { scale, decimals } = this.sheet;
-    const answer = this.ask({ do: "gesture", keep: false, scale, gesture: { decimals, ...gesture } });
+    const answer = this.ask({ do: "gesture", keep: false, scale, decimals, gesture });
     if (!answer.refused) {
       this.sheet.show(answer.picture, scale);
       this.tellStatus(answer.status);
@@ -282,6 +296,7 @@ class Studio {
     this.step("text_redo");
   }
 
+  /** @param {"text_undo" | "text_redo"} word */
   step(word) {
     this.typedAt = -Infinity;
     this.design.drop();
@@ -383,7 +398,10 @@ class Studio {
     }
   }
 
-  /** Does an action of the inspector; one without a name asks for it. */
+  /**
+   * Does an action of the inspector; one without a name asks for it.
+   * @param {any} gesture
+   */
   async act(gesture) {
     if ("name" in gesture && gesture.name === null) {
       const name = await askName(this.root, "Name of the parameter", "length");
@@ -400,10 +418,9 @@ class Studio {
   /** Asks for one of several items: pairs of text and value. */
   choose(items, event) {
     return new Promise((done) => {
-      const place = [event.clientX ?? innerWidth / 2, event.clientY ?? innerHeight / 2];
       this.menu.open(
         items.map(([label, value]) => ({ label, act: () => done(value) })),
-        place,
+        [event.clientX ?? innerWidth / 2, event.clientY ?? innerHeight / 2],
       );
     });
   }
@@ -678,7 +695,8 @@ class Studio {
         watcher.unobserve(target);
         setTimeout(() => {
           const template = this.templates[buttons.indexOf(target)];
-          template.picture ??= this.ask({ do: "svg", ...template }).svg ?? "";
+          const { name, text, files } = template;
+          template.picture ??= this.ask({ do: "svg", name, text, files }).svg ?? "";
           showPicture(target.querySelector(".picture"), template.picture);
         });
       }
@@ -824,6 +842,7 @@ async function begin() {
 }
 
 begin().catch((error) => {
+  /** @type {HTMLElement} */
   const place = document.querySelector(".studio .failed");
   place.hidden = false;
   place.textContent = `This browser cannot run the studio: ${error.message}`;

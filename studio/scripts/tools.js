@@ -1,3 +1,4 @@
+// @ts-check
 // The tools by which a mechanism is drawn: what they ask for, click by click, and the gesture that comes
 // out. Each click is at a point, on a body, on ground or on the bare sheet; the solver knows the rest.
 
@@ -38,7 +39,10 @@ export function ownMarker(point) {
   return point.markers.find((marker) => !marker.startsWith("ground.")) ?? point.markers[0];
 }
 
-/** What the solver gets for a click: where it is, and what is there. */
+/**
+ * What the solver gets for a click: where it is, and what is there.
+ * @returns {import("../../page/scripts/messages").Target}
+ */
 function target(found, { own = false, ground = false } = {}) {
   if (found.point) {
     return { at: found.at, marker: own ? ownMarker(found.point) : found.point.markers[0] };
@@ -57,7 +61,18 @@ function isBetween([x, y], [u, v], [a, b]) {
 
 const NEEDS_POINT = "Choose a pin or the end of a link";
 
-/** A tool whose clicks are taken as they come. */
+/**
+ * @typedef {{
+ *   label: string | null, key?: string, group?: string, hints: string[], only?: string[], typed?: boolean,
+ *   least?: number, most?: number, gesture?: (found: any[]) => import("../../page/scripts/messages").Gesture,
+ * }} Tool
+ */
+
+/**
+ * A tool whose clicks are taken as they come.
+ * @param {number} count
+ * @param {(found: any[]) => import("../../page/scripts/messages").Gesture} gesture
+ */
 function byClicks(count, gesture) {
   return { most: count, least: count, gesture };
 }
@@ -66,6 +81,7 @@ function byClicks(count, gesture) {
  * The tools. `hints` say what to click, one per click; `least` and `most` count the clicks; `only` names
  * what each click must be at; `typed` tells that length and direction can be typed; `gesture` makes the
  * gesture of what was found at the clicks.
+ * @type {Record<string, Tool>}
  */
 export const TOOLS = {
   select: {

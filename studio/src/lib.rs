@@ -15,18 +15,62 @@ use biela::fmi::{Platform, RuntimeLibrary};
 use biela::kinematics::{Path, Solver};
 use biela::mechanism::{Mechanism, Severity, Source};
 use biela::page::assembled;
+use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// A studio that also exports and imports. Contents of files are in base64; a request that fails is
+/// A request, in JSON with its name under `do`. Contents of files are in base64; a request that fails is
 /// answered by `problems`, one per line.
-///
-/// | `do` | further keys | answer |
-/// |---|---|---|
-/// | `export` | `name`, `text`, `files`, `fmi` (`2` or `3`), `libraries` (platforms with libraries), maybe `page` (the solver for pages) | `content` of the FMU |
-/// | `dxf` | `name`, `text`, `files` | `content` of the drawing of the pose at the start, `notes` |
-/// | `svg` | `name`, `text`, `files` | `svg`: the drawing of the pose at the start |
-/// | `gif` | `name`, `text`, `files` | `content` of the moving picture |
-/// | `import` | `name` of a file or a link, its `content`, maybe `length` (its unit) | `text` of the mechanism file, `name`, `notes` |
+#[derive(Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+enum Request {
+    /// Answers the `content` of an FMU for hosts of FMI `2` or `3`, with libraries for platforms, and
+    /// maybe with a page, for which this is the solver.
+    Export {
+        name: String,
+        text: String,
+        #[serde(default)]
+        files: Files,
+        fmi: String,
+        libraries: Files,
+        page: Option<String>,
+    },
+    /// Answers the `content` of the drawing of the pose at the start, and `notes`.
+    Dxf {
+        name: String,
+        text: String,
+        #[serde(default)]
+        files: Files,
+    },
+    /// Answers `svg`: the drawing of the pose at the start.
+    Svg {
+        name: String,
+        text: String,
+        #[serde(default)]
+        files: Files,
+    },
+    /// Answers the `content` of the moving picture.
+    Gif {
+        name: String,
+        text: String,
+        #[serde(default)]
+        files: Files,
+    },
+    /// Reads the `content` of a file, or a link, of another program, whose lengths are in a unit; answers
+    /// the `text` of the mechanism file, its `name` and `notes`.
+    Import {
+        name: String,
+        content: String,
+        length: Option<String>,
+    },
+    /// A request of the studio.
+    #[serde(other)]
+    OfStudio,
+}
+
+/// Names with contents.
+type Files = Vec<(String, String)>;
+
+/// A studio that also exports and imports.
 #[derive(Default)]
 struct Host {
     studio: biela::studio::Host,
@@ -34,26 +78,14 @@ struct Host {
 
 impl Host {
     fn answer(&mut self, request: &str) -> Value {
-        const OWN: [&str; 5] = ["export", "dxf", "svg", "gif", "import"];
-        // The word comes first, so that no other request is read twice.
-        let word = request
-            .strip_prefix("{\"do\":\"")
-            .and_then(|rest| rest.split('"').next());
-        let Some(word) = word.filter(|word| OWN.contains(word)) else {
-            return self.studio.answer(request);
-        };
-        let request: Value = match serde_json::from_str(request) {
-            Ok(request) => request,
+        let asked: Value = match serde_json::from_str(request) {
+            Ok(asked) => asked,
             Err(error) => return json!({ "error": error.to_string() }),
         };
-        let answer = match word {
-            "import" => import(&request),
-            _ => mechanism(&request).and_then(|(source, mechanism)| match word {
-                "export" => export(&request, &source, &mechanism),
-                "dxf" => dxf(mechanism),
-                "svg" => still(&mechanism),
-                _ => Ok(json!({ "content": STANDARD.encode(gif(&source, &mechanism)?) })),
-            }),
+        let answer = match Request::deserialize(&asked) {
+            Ok(Request::OfStudio) => return self.studio.answer_to(&asked),
+            Ok(own) => answer(own),
+            Err(error) => return json!({ "error": error.to_string() }),
         };
         answer.unwrap_or_else(|problems| json!({ "problems": problems }))
     }
@@ -67,18 +99,32 @@ impl Host {
     }
 }
 
-/// Returns a text of a request, empty if there is none.
-fn word<'a>(request: &'a Value, key: &str) -> &'a str {
-    request[key].as_str().unwrap_or_default()
-}
-
-/// Returns pairs of texts of a request.
-fn pairs(request: &Value, key: &str) -> Vec<(String, String)> {
-    let list = request[key].as_array().map_or(&[][..], Vec::as_slice);
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    list.iter()
-        .map(|pair| (text(&pair[0]), text(&pair[1])))
-        .collect()
+fn answer(request: Request) -> Result<Value, String> {
+    match request {
+        Request::Export {
+            name,
+            text,
+            files,
+            fmi,
+            libraries,
+            page,
+        } => {
+            let (source, mechanism) = mechanism(name, text, files)?;
+            export(&source, &mechanism, &fmi, libraries, page)
+        }
+        Request::Dxf { name, text, files } => dxf(mechanism(name, text, files)?.1),
+        Request::Svg { name, text, files } => still(&mechanism(name, text, files)?.1),
+        Request::Gif { name, text, files } => {
+            let (source, mechanism) = mechanism(name, text, files)?;
+            Ok(json!({ "content": STANDARD.encode(gif(&source, &mechanism)?) }))
+        }
+        Request::Import {
+            name,
+            content,
+            length,
+        } => import(&name, &content, length.as_deref()),
+        Request::OfStudio => Ok(Value::Null),
+    }
 }
 
 fn unpacked(packed: &str) -> Result<Vec<u8>, String> {
@@ -86,9 +132,8 @@ fn unpacked(packed: &str) -> Result<Vec<u8>, String> {
 }
 
 /// Reads the mechanism of a request.
-fn mechanism(request: &Value) -> Result<(Source, Arc<Mechanism>), String> {
-    let source = Source::new(word(request, "name"), word(request, "text"));
-    let source = source.with_files(pairs(request, "files"));
+fn mechanism(name: String, text: String, files: Files) -> Result<(Source, Arc<Mechanism>), String> {
+    let source = Source::new(name, text).with_files(files);
     match Mechanism::parse(&source) {
         Ok((mechanism, _)) => Ok((source, Arc::new(mechanism))),
         Err(problems) => {
@@ -101,18 +146,21 @@ fn mechanism(request: &Value) -> Result<(Source, Arc<Mechanism>), String> {
     }
 }
 
-fn export(request: &Value, source: &Source, mechanism: &Arc<Mechanism>) -> Result<Value, String> {
-    let libraries = pairs(request, "libraries")
-        .into_iter()
-        .map(|(name, packed)| {
-            let platform = Platform::named(&name);
-            let platform = platform.ok_or_else(|| format!("no platform is called `{name}`"))?;
-            let content = unpacked(&packed)?.into();
-            Ok(RuntimeLibrary { platform, content })
-        });
+fn export(
+    source: &Source,
+    mechanism: &Arc<Mechanism>,
+    fmi: &str,
+    libraries: Files,
+    page: Option<String>,
+) -> Result<Value, String> {
+    let libraries = libraries.into_iter().map(|(name, packed)| {
+        let platform = Platform::named(&name);
+        let platform = platform.ok_or_else(|| format!("no platform is called `{name}`"))?;
+        let content = unpacked(&packed)?.into();
+        Ok(RuntimeLibrary { platform, content })
+    });
     let libraries = libraries.collect::<Result<Vec<_>, String>>()?;
-    let page = request["page"].as_str().map(unpacked).transpose()?;
-    let fmi = word(request, "fmi");
+    let page = page.as_deref().map(unpacked).transpose()?;
     let fmu = archive_with(source, mechanism, fmi, &libraries, page.as_deref())?;
     Ok(json!({ "content": STANDARD.encode(fmu) }))
 }
@@ -134,11 +182,10 @@ fn still(mechanism: &Arc<Mechanism>) -> Result<Value, String> {
     Ok(json!({ "svg": svg::write(&sheet, sheet.width(), false) }))
 }
 
-fn import(request: &Value) -> Result<Value, String> {
-    let name = word(request, "name");
-    let content = unpacked(word(request, "content"))?;
+fn import(name: &str, content: &str, length: Option<&str>) -> Result<Value, String> {
+    let content = unpacked(content)?;
     let mut units = LengthUnit::ALL.into_iter();
-    let length = units.find(|unit| unit.name() == word(request, "length"));
+    let length = units.find(|unit| Some(unit.name()) == length);
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
     let format = Format::of(&extension.to_lowercase(), &content);
     let draft = format.and_then(|format| format.read(&content, stem, length));

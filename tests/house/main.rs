@@ -3,3 +3,4 @@
 mod joints;
 mod language;
 mod layers;
+mod messages;

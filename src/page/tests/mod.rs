@@ -337,6 +337,11 @@ fn requests_are_answered_and_nonsense_is_refused() {
             "poses",
         ),
         (json!({ "do": "fly" }), "error"),
+        (json!({ "do": "diagram", "scale": 2 }), "error"),
+        (
+            json!({ "do": "drive", "driver": 0, "value": 1.5, "anew": true }),
+            "error",
+        ),
         (json!([]), "error"),
     ] {
         assert!(!ask(request.clone())[key].is_null(), "{request}");

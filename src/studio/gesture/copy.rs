@@ -3,11 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
-
 use super::super::drawn::within_turn;
 use super::super::reference::references;
-use super::{Editing, Refusal, names, number, point};
+use super::{Editing, Refusal};
 use crate::mechanism::write::degrees;
 use crate::mechanism::write::{TomlText, in_braces, in_lines};
 use crate::mechanism::{Body, BodyId, Joint, MarkerId, Mechanism};
@@ -60,17 +58,34 @@ impl Copies {
 /// Sections whose entries are duplicated with all bodies that they name.
 const DUPLICATED: [&str; 4] = ["drivers", "freedoms", "forces", "stops"];
 
-/// Copies `bodies`: moved `by` a way, or mirrored over the line through `at` at an `angle`. The joints
-/// among them and with ground are copied, too, with points of ground of their own; where they are not
-/// mirrored, also their drivers, freedoms, forces and stops.
-pub(super) fn copy(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
+/// Copies bodies, moved by a way.
+pub(super) fn duplicate(
+    editing: &mut Editing,
+    bodies: &[String],
+    by: [f64; 2],
+) -> Result<(), Refusal> {
+    copy(editing, bodies, Way::By(by))
+}
+
+/// Copies bodies, mirrored over the line through a point at an angle \[rad\].
+pub(super) fn mirror(
+    editing: &mut Editing,
+    bodies: &[String],
+    at: [f64; 2],
+    angle: f64,
+) -> Result<(), Refusal> {
+    copy(editing, bodies, Way::Over(at, angle))
+}
+
+/// Copies bodies. The joints among them and with ground are copied, too, with points of ground of their
+/// own; where they are not mirrored, also their drivers, freedoms, forces and stops.
+fn copy(editing: &mut Editing, names: &[String], way: Way) -> Result<(), Refusal> {
     let mechanism = editing.mechanism()?;
-    let way = match gesture["kind"].as_str() {
-        Some("mirror") => Way::Over(point(&gesture["at"])?, number(gesture, "angle")?),
-        _ => Way::By(point(&gesture["by"])?),
-    };
+    if names.is_empty() {
+        return Err("choose bodies to copy".into());
+    }
     let mut bodies: Vec<&Body> = Vec::new();
-    for name in names(gesture, "bodies")? {
+    for name in names {
         let body = editing.body(name)?;
         if !bodies.iter().any(|other| other.name == body.name) {
             bodies.push(body);

@@ -13,7 +13,10 @@ const ROUNDS: usize = 10_000;
 /// Takes things away by their names, and markers by their paths. What refers to them goes along, as far
 /// as the file would have an error otherwise, and points of ground that only deleted joints used. The
 /// value of a deleted parameter takes its place.
-pub(super) fn delete(editing: &mut Editing, names: &[&str]) -> Result<(), Refusal> {
+pub(super) fn delete(editing: &mut Editing, names: &[String]) -> Result<(), Refusal> {
+    if names.is_empty() {
+        return Err("choose what is to be taken away".into());
+    }
     let before = references(&editing.text);
     for name in names {
         path_of(&editing.text, name)?;

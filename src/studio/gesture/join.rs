@@ -1,13 +1,14 @@
 //! A point that is moved onto another one and pinned there.
 
-use serde_json::Value;
-
-use super::shift::{Through, move_points};
-use super::{Editing, Refusal, marker_name, name};
+use super::shift::move_points;
+use super::{Editing, Refusal, Through, marker_name};
 
 /// Moves a marker, with all that is pinned to it, onto another one and pins it there.
-pub(super) fn join(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
-    let (path, onto_path) = (name(gesture, "marker")?, name(gesture, "onto")?);
+pub(super) fn join(
+    editing: &mut Editing,
+    [path, onto_path]: [&str; 2],
+    through: Option<Through>,
+) -> Result<(), Refusal> {
     let (marker, onto) = (editing.marker(path)?, editing.marker(onto_path)?);
     let moved = editing.drawn.pinned_to(marker);
     if moved.contains(&onto) {
@@ -32,7 +33,7 @@ pub(super) fn join(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
     let by = [to[0] - from[0], to[1] - from[1]];
     // Points that meet already keep their bodies as they are.
     if by.iter().any(|part| editing.rounded(*part).abs() > 0.0) {
-        move_points(editing, &[marker], by, Through::of(gesture))?;
+        move_points(editing, &[marker], by, through)?;
     }
     editing.join(marker_name(path), "revolute", [onto_path, path]);
     Ok(())

@@ -1,17 +1,21 @@
 //! The distance between two points of a body, which is set or becomes a parameter.
 
-use serde_json::Value;
-
 use super::parameter::{add_parameter, check_name, is_number};
-use super::shift::{Through, UNCHANGED, ends_of_bar, move_alone};
-use super::{Editing, Refusal, names};
+use super::shift::{UNCHANGED, ends_of_bar, move_alone};
+use super::{Editing, Refusal, Through};
 use crate::mechanism::MarkerId;
 
 /// Sets the distance between two `markers` of one body, or of ground, to `value` \[m\]: the second one
 /// moves along the line on its body, all other lengths stay. With `name` the length becomes a
 /// parameter.
-pub(super) fn length(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
-    let [first, second] = names(gesture, "markers")?[..] else {
+pub(super) fn length(
+    editing: &mut Editing,
+    markers: &[String],
+    value: Option<f64>,
+    name: Option<&str>,
+    through: Option<Through>,
+) -> Result<(), Refusal> {
+    let [first, second] = markers else {
         return Err("a length is between two points".into());
     };
     let ends = [editing.marker(first)?, editing.marker(second)?];
@@ -36,12 +40,11 @@ pub(super) fn length(editing: &mut Editing, gesture: &Value) -> Result<(), Refus
         )
         .into());
     }
-    let value = gesture["value"].as_f64().unwrap_or(now);
-    if !(value.is_finite() && value > 0.0) {
+    let value = value.unwrap_or(now);
+    if value <= 0.0 {
         return Err("a length is above zero".into());
     }
     let is_other = (value - now).abs() > UNCHANGED;
-    let name = gesture["name"].as_str();
     if let Some(name) = name {
         check_name(editing, name)?;
         number_of(editing, body, ends)?;
@@ -59,7 +62,7 @@ pub(super) fn length(editing: &mut Editing, gesture: &Value) -> Result<(), Refus
     }
     if is_other {
         let by = way.map(|part| part * (value - now) / now);
-        move_alone(editing, ends[1], by, Through::of(gesture))?;
+        move_alone(editing, ends[1], by, through)?;
     }
     if let Some(name) = name {
         // Only now has the number its last value.

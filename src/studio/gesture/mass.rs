@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use serde_json::Value;
-
 use super::{Editing, Refusal};
 use crate::mechanism::{Body, MarkerId, rounded};
 
@@ -16,16 +14,16 @@ const OWN: f64 = 5e-3;
 
 /// Gives a body a mass \[kg\], the usual one if the gesture has none; a body that has one already gets
 /// another one.
-pub(super) fn mass(editing: &mut Editing, name: &str, mass: &Value) -> Result<(), Refusal> {
+pub(super) fn mass(editing: &mut Editing, name: &str, mass: Option<f64>) -> Result<(), Refusal> {
     let body = editing.body(name)?;
-    let mass = match (mass.as_f64(), &body.mass) {
+    let mass = match (mass, &body.mass) {
         (Some(mass), _) => mass,
         (None, None) => USUAL_MASS,
         (None, Some(_)) => {
             return Err(format!("`{name}` has a mass already: change its number").into());
         }
     };
-    if !(mass.is_finite() && mass > 0.0) {
+    if mass <= 0.0 {
         return Err(format!("a mass is above zero, unlike {mass} kg").into());
     }
     if body.mass.is_some() {

@@ -50,10 +50,9 @@ mod trace;
 mod wheel;
 mod wheels;
 
-use serde_json::Value;
-
 use super::drawn::{Drawn, inside};
 use super::names::Names;
+use super::request::{Follower, Gesture, Onto, Target, Through, WheelPair};
 use crate::mechanism::write::degrees;
 use crate::mechanism::write::{TomlText, in_braces, in_lines};
 use crate::mechanism::{
@@ -92,27 +91,6 @@ impl From<String> for Refusal {
     }
 }
 
-/// The place at which a gesture acts.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Target {
-    /// Global point \[m\].
-    pub(super) at: [f64; 2],
-    pub(super) onto: Onto,
-}
-
-/// The thing at a place.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Onto {
-    /// The bare sheet.
-    Sheet,
-    /// Ground.
-    Ground,
-    /// A body, by its name.
-    Body(String),
-    /// A marker, by its path.
-    Marker(String),
-}
-
 /// A file that a gesture changes.
 pub(super) struct Editing<'a> {
     pub(super) text: TomlText,
@@ -129,47 +107,77 @@ pub(super) struct Editing<'a> {
 /// # Errors
 ///
 /// The reason why it cannot be done.
-pub(super) fn act(gesture: &Value, editing: &mut Editing) -> Result<(), Refusal> {
-    let kind = gesture["kind"].as_str().unwrap_or_default();
-    match kind {
-        "link" => link::link(editing, &targets(gesture, "points")?),
-        "pivot" => pivot::pivot(editing, name(gesture, "marker")?),
-        "join" => join::join(editing, gesture),
-        "slider" => slider::slider(
-            editing,
-            &target(&gesture["target"])?,
-            number(gesture, "angle")?,
-        ),
-        "slot" => slider::slot(editing, name(gesture, "marker")?, name(gesture, "body")?),
-        "cylinder" => cylinder::cylinder(editing, &targets(gesture, "points")?),
-        "wheels" => wheels::wheels(editing, gesture),
-        "rack" => rack::rack(
-            editing,
-            &target(&gesture["point"])?,
-            point(&gesture["contact"])?,
-        ),
-        "cam" => cam::cam(editing, gesture),
-        "spring" | "damper" => spring::spring(editing, kind, &targets(gesture, "points")?),
-        "load" => load::load(editing, name(gesture, "marker")?),
-        "mass" => mass::mass(editing, name(gesture, "body")?, &gesture["mass"]),
-        "driver" => drive::driver(editing, name(gesture, "joint")?),
-        "freedom" => drive::freedom(editing, name(gesture, "joint")?),
-        "stop" => stop::stop(editing, gesture),
-        "shift" => shift::shift(editing, gesture),
-        "length" => length::length(editing, gesture),
-        "parameter" => parameter::parameter(editing, gesture),
-        "put" => put::put(editing, gesture),
-        "rename" => rename::rename(editing, name(gesture, "old")?, name(gesture, "new")?),
-        "delete" => delete::delete(editing, &names(gesture, "names")?),
-        "duplicate" | "mirror" => copy::copy(editing, gesture),
-        "trace" => trace::trace(editing, name(gesture, "marker")?),
-        _ => Err(Refusal::Because(format!("no gesture is called `{kind}`"))),
+pub(super) fn act(gesture: &Gesture, editing: &mut Editing) -> Result<(), Refusal> {
+    match gesture {
+        Gesture::Link { points } => link::link(editing, points),
+        Gesture::Pivot { marker } => pivot::pivot(editing, marker),
+        Gesture::Join {
+            marker,
+            onto,
+            through,
+        } => join::join(editing, [marker, onto], *through),
+        Gesture::Slider { target, angle } => slider::slider(editing, target, *angle),
+        Gesture::Slot { marker, body } => slider::slot(editing, marker, body),
+        Gesture::Cylinder { points } => cylinder::cylinder(editing, points),
+        Gesture::Wheels {
+            r#type,
+            points,
+            contact,
+            radii,
+        } => wheels::wheels(editing, *r#type, points, *contact, *radii),
+        Gesture::Rack { point, contact } => rack::rack(editing, point, *contact),
+        Gesture::Cam {
+            point,
+            contact,
+            follower,
+        } => cam::cam(editing, point, *contact, *follower),
+        Gesture::Spring { points } => spring::spring(editing, points),
+        Gesture::Damper { points } => spring::damper(editing, points),
+        Gesture::Load { marker } => load::load(editing, marker),
+        Gesture::Mass { body, mass } => mass::mass(editing, body, *mass),
+        Gesture::Driver { joint } => drive::driver(editing, joint),
+        Gesture::Freedom { joint } => drive::freedom(editing, joint),
+        Gesture::Stop {
+            driver,
+            joint,
+            min,
+            max,
+        } => stop::stop(editing, driver.as_deref(), joint.as_deref(), [*min, *max]),
+        Gesture::Shift {
+            markers,
+            by,
+            through,
+        } => shift::shift(editing, markers, *by, *through),
+        Gesture::Length {
+            markers,
+            value,
+            name,
+            through,
+        } => length::length(editing, markers, *value, name.as_deref(), *through),
+        Gesture::Parameter {
+            path,
+            element,
+            name,
+        } => parameter::parameter(editing, path, *element, name),
+        Gesture::Put {
+            path,
+            element,
+            value,
+        } => put::put(editing, path, *element, value),
+        Gesture::Rename { old, new } => rename::rename(editing, old, new),
+        Gesture::Delete { names } => delete::delete(editing, names),
+        Gesture::Duplicate { bodies, by } => copy::duplicate(editing, bodies, *by),
+        Gesture::Mirror { bodies, at, angle } => copy::mirror(editing, bodies, *at, *angle),
+        Gesture::Trace { marker } => trace::trace(editing, marker),
     }
 }
 
 /// Returns whether the places of bodies are to be written anew after a gesture.
-pub(super) fn moves(gesture: &Value) -> bool {
-    matches!(gesture["kind"].as_str(), Some("shift" | "join" | "length"))
+pub(super) fn moves(gesture: &Gesture) -> bool {
+    matches!(
+        gesture,
+        Gesture::Shift { .. } | Gesture::Join { .. } | Gesture::Length { .. }
+    )
 }
 
 impl<'a> Editing<'a> {
@@ -401,55 +409,6 @@ impl<'a> Editing<'a> {
 /// Returns the last part of a marker's path.
 pub(super) fn marker_name(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
-}
-
-/// Returns a finite number of a gesture.
-pub(super) fn number(gesture: &Value, key: &str) -> Result<f64, Refusal> {
-    let number = gesture[key].as_f64().filter(|number| number.is_finite());
-    number.ok_or_else(|| format!("the gesture lacks the number `{key}`").into())
-}
-
-/// Returns a name of a gesture.
-pub(super) fn name<'a>(gesture: &'a Value, key: &str) -> Result<&'a str, Refusal> {
-    let name = gesture[key].as_str();
-    name.ok_or_else(|| format!("the gesture lacks the name `{key}`").into())
-}
-
-/// Returns a point of a gesture \[m\].
-pub(super) fn point(value: &Value) -> Result<[f64; 2], Refusal> {
-    let number = |index: usize| value[index].as_f64().filter(|number| number.is_finite());
-    match (number(0), number(1)) {
-        (Some(x), Some(y)) => Ok([x, y]),
-        _ => Err("the gesture lacks a point".into()),
-    }
-}
-
-fn targets(gesture: &Value, key: &str) -> Result<Vec<Target>, Refusal> {
-    let list = gesture[key].as_array().map_or(&[][..], Vec::as_slice);
-    list.iter().map(target).collect()
-}
-
-fn target(value: &Value) -> Result<Target, Refusal> {
-    let word = |key: &str| value[key].as_str().map(str::to_owned);
-    let onto = match (word("marker"), word("body")) {
-        (Some(marker), _) => Onto::Marker(marker),
-        (None, Some(body)) => Onto::Body(body),
-        (None, None) if value["ground"].as_bool() == Some(true) => Onto::Ground,
-        (None, None) => Onto::Sheet,
-    };
-    Ok(Target {
-        at: point(&value["at"])?,
-        onto,
-    })
-}
-
-fn names<'a>(gesture: &'a Value, key: &str) -> Result<Vec<&'a str>, Refusal> {
-    let list = gesture[key].as_array().map_or(&[][..], Vec::as_slice);
-    let names: Vec<&str> = list.iter().filter_map(Value::as_str).collect();
-    match names.is_empty() {
-        true => Err(format!("the gesture lacks the names `{key}`").into()),
-        false => Ok(names),
-    }
 }
 
 /// Writes the places at which the mechanism is drawn as estimates, so that it closes the same way

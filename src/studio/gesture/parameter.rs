@@ -1,18 +1,19 @@
 //! A number of the file that becomes a parameter.
 
-use serde_json::Value;
-
 use super::super::unit_of::unit_of;
-use super::put::{element_of, path_of_value};
+use super::put::path_of_value;
 use super::rename::check_word;
-use super::{Editing, Refusal, name};
+use super::{Editing, Refusal};
 use crate::mechanism::constant;
 
 /// Makes the number at `path`, or an `element` of the list there, a parameter called `name`.
-pub(super) fn parameter(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
-    let path = path_of_value(gesture)?;
-    let element = element_of(gesture);
-    let name = name(gesture, "name")?;
+pub(super) fn parameter(
+    editing: &mut Editing,
+    path: &[String],
+    element: Option<usize>,
+    name: &str,
+) -> Result<(), Refusal> {
+    let path = path_of_value(path)?;
     if path.first() == Some(&"parameters") {
         return Err("this is a parameter already: rename it".into());
     }

@@ -8,9 +8,14 @@ use crate::mechanism::write::TomlText;
 
 /// Sets the value at `path`, or an `element` of the list there, to the TOML in `value`, or takes it away
 /// where that is `null` or empty. A word that is no TOML is taken as an expression: `2*a`.
-pub(super) fn put(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
-    let path = path_of_value(gesture)?;
-    let value = match &gesture["value"] {
+pub(super) fn put(
+    editing: &mut Editing,
+    path: &[String],
+    element: Option<usize>,
+    value: &Value,
+) -> Result<(), Refusal> {
+    let path = path_of_value(path)?;
+    let value = match value {
         Value::String(text) => text.trim().to_owned(),
         Value::Null => String::new(),
         other => other.to_string(),
@@ -45,7 +50,7 @@ pub(super) fn put(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal>
     {
         follow_mass(editing, body, mass);
     }
-    let Some(index) = element_of(gesture) else {
+    let Some(index) = element else {
         match value.is_empty() {
             true => editing.text.remove(&path),
             false => editing.text.set(&path, &written),
@@ -99,16 +104,12 @@ fn add_element(
 }
 
 /// Returns the path that a gesture names.
-pub(super) fn path_of_value(gesture: &Value) -> Result<Vec<&str>, Refusal> {
-    let path = gesture["path"].as_array().map_or(&[][..], Vec::as_slice);
-    let path: Option<Vec<&str>> = path.iter().map(Value::as_str).collect();
-    let path = path.filter(|path| !path.is_empty() && path.iter().all(|name| is_key(name)));
-    path.ok_or_else(|| "the gesture lacks the path of a value".into())
-}
-
-/// Returns the element of a list that a gesture names.
-pub(super) fn element_of(gesture: &Value) -> Option<usize> {
-    usize::try_from(gesture["element"].as_u64()?).ok()
+pub(super) fn path_of_value(path: &[String]) -> Result<Vec<&str>, Refusal> {
+    let path: Vec<&str> = path.iter().map(String::as_str).collect();
+    if path.is_empty() || !path.iter().all(|name| is_key(name)) {
+        return Err("the gesture lacks the path of a value".into());
+    }
+    Ok(path)
 }
 
 /// Returns whether a word is a key that needs no quotes.

@@ -3,35 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use serde_json::Value;
-
 use super::super::drawn::within_turn;
 use super::super::drawn::{Drawn, inside, outside};
 use super::mass::followed;
-use super::{Editing, Refusal, point};
+use super::{Editing, Refusal, Through};
 use crate::mechanism::write::NumberInUnit;
 use crate::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, shortest};
 
 /// Change of a number below which it stays as it is \[m or rad\].
 pub(super) const UNCHANGED: f64 = 1e-9;
-
-/// The answer to the question whether a parameter changes or the number in its place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Through {
-    Parameter,
-    Number,
-}
-
-impl Through {
-    /// Returns the answer that a gesture gives.
-    pub(super) fn of(gesture: &Value) -> Option<Self> {
-        match gesture["through"].as_str() {
-            Some("parameter") => Some(Self::Parameter),
-            Some("number") => Some(Self::Number),
-            _ => None,
-        }
-    }
-}
 
 /// Parts of the text that are replaced together: it is read once for all of them.
 #[derive(Default)]
@@ -94,18 +74,19 @@ struct Meant {
 
 /// Moves the points at `markers`, with all that is pinned to them, by the way `by` \[m\]. Where a number
 /// is an expression, `through` says whether its `parameter` changes or the `number` takes its place.
-pub(super) fn shift(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
-    let by = point(&gesture["by"])?;
-    let paths = gesture["markers"].as_array().map_or(&[][..], Vec::as_slice);
-    let markers = paths
-        .iter()
-        .map(|path| editing.marker(path.as_str().unwrap_or_default()));
+pub(super) fn shift(
+    editing: &mut Editing,
+    markers: &[String],
+    by: [f64; 2],
+    through: Option<Through>,
+) -> Result<(), Refusal> {
+    let markers = markers.iter().map(|path| editing.marker(path));
     let markers: Vec<MarkerId> = markers.collect::<Result<_, _>>()?;
     if markers.is_empty() {
         return Err("no point is to be moved".into());
     }
     // Points that are dragged stay as fine as the sheet shows them.
-    move_rounded(editing, &markers, by, Through::of(gesture), true)
+    move_rounded(editing, &markers, by, through, true)
 }
 
 /// Moves points with all that is pinned to them. A bar gets another length and direction, a plate

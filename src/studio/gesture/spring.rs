@@ -13,27 +13,36 @@ const DAMPING_RATIO: f64 = 0.2;
 /// Significant digits of the values.
 const DIGITS: usize = 2;
 
-/// Adds a `spring`, free of force as it is drawn, or a `damper` between two points of different bodies.
-pub(super) fn spring(editing: &mut Editing, noun: &str, points: &[Target]) -> Result<(), Refusal> {
-    let (ends, long) = ends(editing, noun, points)?;
-    let mass = lighter(editing, &ends);
-    let angular = std::f64::consts::TAU * FREQUENCY;
-    let keys = match noun {
-        "spring" => {
-            let stiffness = rounded(mass * angular * angular, DIGITS);
-            format!("stiffness = {stiffness}, free = {}", editing.length(long))
-        }
-        _ => {
-            let damping = rounded(2.0 * DAMPING_RATIO * mass * angular, DIGITS);
-            format!("damping = {damping}")
-        }
-    };
+/// Natural angular frequency \[rad/s\].
+const ANGULAR: f64 = std::f64::consts::TAU * FREQUENCY;
+
+/// Adds a spring, free of force as it is drawn, between two points of different bodies.
+pub(super) fn spring(editing: &mut Editing, points: &[Target]) -> Result<(), Refusal> {
+    let (ends, long) = ends(editing, "spring", points)?;
+    let stiffness = rounded(lighter(editing, &ends) * ANGULAR * ANGULAR, DIGITS);
+    let free = editing.length(long);
+    let keys = format!("stiffness = {stiffness}, free = {free}");
+    add(editing, "spring", ends, &keys);
+    Ok(())
+}
+
+/// Adds a damper between two points of different bodies.
+pub(super) fn damper(editing: &mut Editing, points: &[Target]) -> Result<(), Refusal> {
+    let (ends, _) = ends(editing, "damper", points)?;
+    let damping = rounded(
+        2.0 * DAMPING_RATIO * lighter(editing, &ends) * ANGULAR,
+        DIGITS,
+    );
+    add(editing, "damper", ends, &format!("damping = {damping}"));
+    Ok(())
+}
+
+/// Adds a force along the distance between two markers.
+fn add(editing: &mut Editing, noun: &str, [from, to]: [String; 2], keys: &str) {
     let name = editing.names.new_name(noun);
-    let [from, to] = ends;
     let value =
         format!("{{ coordinate = \"distance\", markers = [\"{from}\", \"{to}\"], {keys} }}");
     editing.text.set(&["forces", &name], &value);
-    Ok(())
 }
 
 /// Returns the mass of the lighter of the two bodies \[kg\], the usual one if none has a mass.

@@ -1,7 +1,5 @@
 //! Stops: limits of a coordinate.
 
-use serde_json::Value;
-
 use super::{ANGLE_DECIMALS, Editing, Refusal};
 use crate::mechanism::write::degrees;
 use crate::mechanism::{Coordinate, CoordinateKind, Mechanism, rounded};
@@ -17,10 +15,15 @@ const DIGITS: usize = 2;
 const SHOWN: usize = 4;
 
 /// Adds stops on both sides of where a `driver`, a freedom or a measure is drawn, or the coordinate of a
-/// `joint`; or at the limits `min` and `max` \[m or rad\] that the gesture gives.
-pub(super) fn stop(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
+/// `joint`; or at the limits \[m or rad\] that the gesture gives.
+pub(super) fn stop(
+    editing: &mut Editing,
+    driver: Option<&str>,
+    joint: Option<&str>,
+    given: [Option<f64>; 2],
+) -> Result<(), Refusal> {
     let mechanism = editing.mechanism()?;
-    let (coordinate, keys, word) = match (gesture["driver"].as_str(), gesture["joint"].as_str()) {
+    let (coordinate, keys, word) = match (driver, joint) {
         (Some(name), _) => {
             let named = known(mechanism).find(|(known, _)| *known == name);
             let (_, coordinate) =
@@ -42,7 +45,7 @@ pub(super) fn stop(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal
         }
         (None, None) => return Err("a stop limits a driver or a joint".into()),
     };
-    let limits = limits(editing, gesture, coordinate)?;
+    let limits = limits(editing, given, coordinate)?;
     let name = editing.names.new_name(&format!("{word}_stop"));
     let value = format!("{{ {keys}, {limits} }}");
     editing.text.set(&["stops", &name], &value);
@@ -58,7 +61,11 @@ fn known(mechanism: &Mechanism) -> impl Iterator<Item = (&str, Coordinate)> {
 }
 
 /// Writes the limits of a coordinate, which have its present value between them.
-fn limits(editing: &Editing, gesture: &Value, coordinate: Coordinate) -> Result<String, Refusal> {
+fn limits(
+    editing: &Editing,
+    given: [Option<f64>; 2],
+    coordinate: Coordinate,
+) -> Result<String, Refusal> {
     let mechanism = editing.mechanism()?;
     let is_angle = coordinate.kind.is_angle();
     let mut drivers = mechanism.drivers.iter();
@@ -66,7 +73,6 @@ fn limits(editing: &Editing, gesture: &Value, coordinate: Coordinate) -> Result<
     let start = drivers.find(|driver| driver.coordinate == coordinate);
     let start = start.and_then(crate::mechanism::Driver::start);
     let now = start.unwrap_or_else(|| editing.drawn.value(coordinate));
-    let given = ["min", "max"].map(|key| gesture[key].as_f64().filter(|x| x.is_finite()));
     let [min, max] = match given {
         [None, None] if is_angle => [Some(now - ANGLE), Some(now + ANGLE)],
         [None, None] => {

@@ -1,16 +1,19 @@
 //! Pairs of wheels: in mesh, or on a belt.
 
-use serde_json::Value;
-
 use super::wheel::Centre;
-use super::{Editing, Refusal, name, point, targets};
+use super::{Editing, Refusal, Target, WheelPair};
 
-/// Adds two wheels, which mesh as they are drawn: `gear` and `internal` with pitch circles that meet at
-/// a contact, `belt` and `crossed` with radii. A centre of a wheel that is there already takes that
-/// wheel, so that trains are drawn one pair after the other.
-pub(super) fn wheels(editing: &mut Editing, gesture: &Value) -> Result<(), Refusal> {
-    let kind = name(gesture, "type")?;
-    let [first, second] = &targets(gesture, "points")?[..] else {
+/// Adds two wheels, which mesh as they are drawn: in mesh with pitch circles that meet at a contact, on a
+/// belt with radii. A centre of a wheel that is there already takes that wheel, so that trains are drawn
+/// one pair after the other.
+pub(super) fn wheels(
+    editing: &mut Editing,
+    pair: WheelPair,
+    points: &[Target],
+    contact: Option<[f64; 2]>,
+    radii: Option<[f64; 2]>,
+) -> Result<(), Refusal> {
+    let [first, second] = points else {
         return Err("a pair of wheels has two centres".into());
     };
     let centres = [Centre::of(editing, first)?, Centre::of(editing, second)?];
@@ -21,18 +24,20 @@ pub(super) fn wheels(editing: &mut Editing, gesture: &Value) -> Result<(), Refus
         return Err("the centres of the wheels are one point: put them apart".into());
     }
     let carrier = carrier(&centres)?;
-    let radii = match kind {
-        "gear" | "internal" => {
-            let contact = point(&gesture["contact"])?;
+    let radii = match pair {
+        WheelPair::Gear | WheelPair::Internal => {
+            let contact = contact.ok_or("wheels in mesh meet at a `contact`")?;
             let along = [0, 1].map(|k| (contact[k] - a[k]) * way[k] / apart);
             in_mesh(
-                kind == "internal",
+                pair == WheelPair::Internal,
                 editing.rounded(along[0] + along[1]),
                 apart,
             )?
         }
-        "belt" | "crossed" => on_belt(kind == "crossed", point(&gesture["radii"])?, apart)?,
-        _ => return Err(format!("no pair of wheels is called `{kind}`").into()),
+        WheelPair::Belt | WheelPair::Crossed => {
+            let radii = radii.ok_or("wheels on a belt have `radii`")?;
+            on_belt(pair == WheelPair::Crossed, radii, apart)?
+        }
     };
     let radii = radii.map(|radius| editing.length(radius));
     if radii.iter().any(|radius| radius == "0") {
@@ -45,10 +50,11 @@ pub(super) fn wheels(editing: &mut Editing, gesture: &Value) -> Result<(), Refus
         centres[0].make(editing, "wheel")?,
         centres[1].make(editing, "wheel")?,
     ];
-    let (word, flag) = match kind {
-        "internal" => ("gear", ", internal = true"),
-        "crossed" => ("belt", ", crossed = true"),
-        _ => (kind, ""),
+    let (word, flag) = match pair {
+        WheelPair::Gear => ("gear", ""),
+        WheelPair::Internal => ("gear", ", internal = true"),
+        WheelPair::Belt => ("belt", ""),
+        WheelPair::Crossed => ("belt", ", crossed = true"),
     };
     let carrier = match &*carrier {
         "ground" => String::new(),

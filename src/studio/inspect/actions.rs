@@ -1,8 +1,10 @@
 //! Gestures that fit what is selected.
 
+use serde::Deserialize as _;
 use serde_json::{Value, json};
 
 use super::super::gesture::{self, Editing, Refusal};
+use super::super::request::Gesture;
 
 /// Part of the drawing's size by which a duplicate is beside its body.
 const BESIDE: f64 = 0.2;
@@ -151,7 +153,8 @@ impl<'a> Actions<'a> {
 
     fn why(&self, gesture: &Value) -> Option<String> {
         let mut editing = self.editing.again();
-        match gesture::act(gesture, &mut editing) {
+        let gesture = Gesture::deserialize(gesture).map_err(|error| error.to_string().into());
+        match gesture.and_then(|gesture| gesture::act(&gesture, &mut editing)) {
             Err(Refusal::Because(why)) => Some(why),
             _ => None,
         }

@@ -84,9 +84,8 @@ fn a_duplicate_of_every_shipped_mechanism_stands_beside_it() {
             .expect("there are bodies")
             .clone();
         let names: Vec<&Value> = bodies.iter().map(|body| &body["name"]).collect();
-        let gesture =
-            json!({ "kind": "duplicate", "bodies": names, "by": [0.3, 1], "decimals": 9 });
-        let view = super::act_warned(&mut host, &gesture);
+        let gesture = json!({ "kind": "duplicate", "bodies": names, "by": [0.3, 1] });
+        let view = super::act_finely(&mut host, &gesture, 9);
         let state = state(&view);
         let text = host.text();
         assert!(
@@ -132,8 +131,8 @@ fn a_mirrored_mechanism_is_the_picture_of_the_first() {
             .expect("there are bodies")
             .clone();
         let names: Vec<&Value> = bodies.iter().map(|body| &body["name"]).collect();
-        let gesture = json!({ "kind": "mirror", "bodies": names, "at": [0.1, 0.2], "angle": 0.7, "decimals": 9 });
-        let request = json!({ "do": "gesture", "keep": true, "gesture": gesture });
+        let gesture = json!({ "kind": "mirror", "bodies": names, "at": [0.1, 0.2], "angle": 0.7 });
+        let request = json!({ "do": "gesture", "keep": true, "decimals": 9, "gesture": gesture });
         let view = super::ask(&mut host, &request);
         if let Some(why) = view["refused"]["message"].as_str() {
             assert!(why.contains("cannot be mirrored"), "{name}: {why}");

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::drawn::Drawn;
 use super::super::gesture::{self, Editing};
 use super::super::host::Host;
-use super::{ask, shipped, shipped_studio};
+use super::{ask, read, shipped, shipped_studio};
 use crate::mechanism::Source;
 use crate::mechanism::write::TomlText;
 
@@ -118,7 +118,7 @@ fn the_value_of_each_row_can_be_put_as_it_is() {
                 });
                 let text = TomlText::new(&*text).expect("it is TOML");
                 let mut editing = Editing::new(text, &drawn, &files, 4);
-                let done = gesture::act(&gesture, &mut editing);
+                let done = gesture::act(&read(&gesture), &mut editing);
                 assert_eq!(done, Ok(()), "{file}, {gesture}");
                 assert_eq!(editing.text.as_str(), host.text(), "{file}, {gesture}");
                 count += 1;

@@ -1,8 +1,10 @@
 //! Drawings by gestures, and the files that come out.
 
+use serde::Deserialize as _;
 use serde_json::{Value, json};
 
 use super::host::Host;
+use super::request::Gesture;
 
 mod copies;
 mod geometry;
@@ -30,6 +32,11 @@ pub(super) fn ask(host: &mut Host, request: &Value) -> Value {
     host.answer(&request.to_string())
 }
 
+/// Reads a gesture.
+pub(super) fn read(gesture: &Value) -> Gesture {
+    Gesture::deserialize(gesture).expect("it is a gesture")
+}
+
 /// Does a gesture that is to succeed and to leave no problem.
 pub(super) fn act(host: &mut Host, gesture: &Value) -> Value {
     let answer = act_warned(host, gesture);
@@ -40,7 +47,13 @@ pub(super) fn act(host: &mut Host, gesture: &Value) -> Value {
 
 /// Does a gesture that is to succeed; what it leaves may have warnings.
 pub(super) fn act_warned(host: &mut Host, gesture: &Value) -> Value {
-    let request = json!({ "do": "gesture", "keep": true, "gesture": gesture });
+    act_finely(host, gesture, 4)
+}
+
+/// Does a gesture, as [`act_warned`] does, with lengths of these decimals.
+pub(super) fn act_finely(host: &mut Host, gesture: &Value, decimals: usize) -> Value {
+    let request =
+        json!({ "do": "gesture", "keep": true, "decimals": decimals, "gesture": gesture });
     let answer = ask(host, &request);
     assert!(answer["refused"].is_null(), "{gesture}: {answer}");
     let problems = answer["problems"].as_array().expect("a list");
@@ -261,4 +274,31 @@ fn every_shipped_mechanism_is_drawn_and_ready() {
             view["status"]
         );
     }
+}
+
+#[test]
+fn a_request_with_a_key_that_it_does_not_have_is_an_error() {
+    let mut host = studio(EMPTY);
+    let sheet = json!({ "at": [0, 0] });
+    let pivot = json!({ "kind": "pivot", "marker": "ground.O", "at": [0, 0] });
+    let far = json!({ "kind": "link", "points": [{ "at": [0, 0], "far": true }] });
+    let spoon = json!({ "kind": "cam", "point": sheet, "contact": [1, 0], "follower": "spoon" });
+    for (request, word) in [
+        (json!({ "do": "view", "size": 3 }), "size"),
+        (json!({ "do": "type" }), "text"),
+        (json!({ "do": "gesture", "gesture": pivot }), "at"),
+        (json!({ "do": "gesture", "gesture": far }), "far"),
+        (json!({ "do": "gesture", "gesture": spoon }), "spoon"),
+        (
+            json!({ "do": "gesture", "gesture": { "kind": "fly" } }),
+            "fly",
+        ),
+        (json!({ "do": "fly" }), "fly"),
+    ] {
+        let answer = ask(&mut host, &request);
+        let error = answer["error"].as_str().unwrap_or_default();
+        assert!(error.contains(&format!("`{word}`")), "{request}: {answer}");
+    }
+    let again = ask(&mut host, &json!({ "do": "view" }));
+    assert_eq!(again["text"], EMPTY);
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::drawn::Drawn;
 use super::super::gesture::{self, Editing, Refusal};
 use super::super::names::named;
-use super::{Files, act, act_warned, refusal, shipped, shipped_studio, state, studio};
+use super::{Files, act, act_warned, read, refusal, shipped, shipped_studio, state, studio};
 use crate::mechanism::write::TomlText;
 use crate::mechanism::{Mechanism, Severity, Source};
 
@@ -17,7 +17,7 @@ fn drawn(text: &str, files: &Files) -> Option<Drawn> {
 fn done(text: &str, drawn: &Drawn, files: &Files, gesture: &Value) -> Result<String, Refusal> {
     let text = TomlText::new(text).expect("it is TOML");
     let mut editing = Editing::new(text, drawn, files, 4);
-    gesture::act(gesture, &mut editing)?;
+    gesture::act(&read(gesture), &mut editing)?;
     Ok(editing.text.as_str().to_owned())
 }
 
