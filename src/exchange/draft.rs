@@ -184,8 +184,8 @@ pub(super) struct Driver {
 pub(super) enum DriverSource {
     /// An input that starts at the value as drawn.
     Input,
-    /// The value as drawn plus this expression in `t`.
-    Added(String),
+    /// The value as drawn plus `shift`, in the coordinate's unit, plus this expression in `t`.
+    Added { shift: f64, text: String },
     /// An expression in `t`, in SI units.
     Motion(String),
 }
@@ -257,30 +257,33 @@ impl Draft {
         });
     }
 
-    /// Returns the source of an angle that turns at a speed, which becomes a parameter; 0 is an
-    /// input.
+    /// Returns the source of an angle that turns at a speed; 0 is an input.
     pub(super) fn turning(&mut self, rpm: f64) -> DriverSource {
-        let value = format!("{rpm}*rpm");
         if rpm == 0.0 {
             return DriverSource::Input;
         }
-        match self.parameters.first() {
-            Some(known) if known.value != value => {
-                return DriverSource::Added(format!("{value}*t"));
-            }
-            Some(_) => {}
-            None => {
-                self.parameters.push(Parameter {
-                    name: "input_speed",
-                    value,
-                    unit: "rad/s",
-                    display: "rpm",
-                    description: "of the driver",
-                });
-                self.run_for(60.0 / rpm.abs());
-            }
+        self.run_for(60.0 / rpm.abs());
+        DriverSource::Added {
+            shift: 0.0,
+            text: format!("{}*t", self.speed(rpm)),
         }
-        DriverSource::Added("input_speed*t".to_owned())
+    }
+
+    /// Returns a speed as an expression; the first one becomes a parameter.
+    pub(super) fn speed(&mut self, rpm: f64) -> String {
+        let value = format!("{rpm}*rpm");
+        match self.parameters.first() {
+            Some(known) if known.value != value => return value,
+            Some(_) => {}
+            None => self.parameters.push(Parameter {
+                name: "input_speed",
+                value,
+                unit: "rad/s",
+                display: "rpm",
+                description: "of the driver",
+            }),
+        }
+        "input_speed".to_owned()
     }
 
     /// Makes the simulation as long as one cycle \[s\], unless it has a length.

@@ -80,22 +80,31 @@ pub enum Note {
         /// Name of the unit.
         unit: &'static str,
     },
-    /// A sense of turning that the source's documentation does not tell.
-    #[error(
-        "a positive speed was taken as counter-clockwise: change the sign of the speed if the source turns the other way"
-    )]
-    Sense,
     /// Motion per step, not per second.
     #[error("the speed of `{name}` is one per step, not per second: its angle is an input")]
     PerStep {
         /// Name of the driver.
         name: String,
     },
-    /// A way that is followed by another law.
-    #[error("`{name}` goes out and back as a cosine; the source may follow another course")]
-    Course {
-        /// Name of the driver.
+    /// A motor between two bodies that move.
+    #[error("input `{name}` moves itself: it turns the second of its links against the first")]
+    MovingInput {
+        /// Name of the pin.
         name: String,
+    },
+    /// A point that is put elsewhere.
+    #[error("`{name}` is moved to where it can be: {reason}")]
+    Moved {
+        /// Name in the source.
+        name: String,
+        /// Reason.
+        reason: &'static str,
+    },
+    /// Entries of the source whose meaning is not known.
+    #[error("left out, as their meaning is not known: {what}")]
+    UnknownKeys {
+        /// Names of the entries.
+        what: String,
     },
     /// Something that is not connected to a body.
     #[error("{kind} `{name}` is left out: {reason}")]

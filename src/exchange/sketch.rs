@@ -63,6 +63,22 @@ impl Sketch {
         self.anchors[point]
     }
 
+    /// Adds a point to a link.
+    pub(super) fn add_to_link(&mut self, link: usize, point: usize) {
+        let points = &mut self.links[link].points;
+        if !points.contains(&point) {
+            points.push(point);
+        }
+    }
+
+    /// Returns whether a link has two anchors, so that it is ground.
+    pub(super) fn is_standing(&self, link: usize) -> bool {
+        let points = self.links[link].points.iter();
+        let mut anchored = points.filter(|point| self.anchors[**point]);
+        let first = anchored.next();
+        first.is_some_and(|first| anchored.any(|point| self.are_apart(*first, *point)))
+    }
+
     pub(super) fn at(&self, point: usize) -> [f64; 2] {
         self.points[point].1
     }
@@ -106,15 +122,7 @@ impl Sketch {
     /// Makes links with two anchors ground, and links that share two places one body.
     fn join_rigid(&mut self) {
         for link in 0..self.links.len() {
-            let anchored = self.links[link].points.iter();
-            let anchored: Vec<usize> = anchored
-                .copied()
-                .filter(|point| self.anchors[*point])
-                .collect();
-            if anchored
-                .iter()
-                .any(|point| self.are_apart(anchored[0], *point))
-            {
+            if self.is_standing(link) {
                 self.ground(link);
             }
         }

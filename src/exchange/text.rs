@@ -289,10 +289,14 @@ impl Writer<'_> {
         let mut keys = match &driver.source {
             DriverSource::Input => format!("start = {start}"),
             DriverSource::Motion(motion) => format!("motion = \"{motion}\""),
-            DriverSource::Added(added) => match start.trim_matches('"') {
-                "0" => format!("motion = \"{added}\""),
-                start => format!("motion = \"{start} + {added}\"").replace("+ -", "- "),
-            },
+            DriverSource::Added { shift, text } => {
+                let start = self.value(driver.coordinate, drawn + shift);
+                match (start.trim_matches('"'), text.strip_prefix('-')) {
+                    ("0", _) => format!("motion = \"{text}\""),
+                    (start, Some(text)) => format!("motion = \"{start} - {text}\""),
+                    (start, None) => format!("motion = \"{start} + {text}\""),
+                }
+            }
         };
         if let Some(limits) = driver.limits {
             let [min, max] = limits.map(|limit| self.value(driver.coordinate, limit));
