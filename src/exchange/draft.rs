@@ -22,6 +22,17 @@ impl LengthUnit {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch];
 
+    /// Returns its length \[m\].
+    #[must_use]
+    pub(super) fn metres(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Centimetre => 0.01,
+            Self::Millimetre => 0.001,
+            Self::Inch => 0.0254,
+        }
+    }
+
     /// Returns the name under which mechanism files and `--length` know the unit.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -53,6 +64,8 @@ pub struct Draft {
     pub(super) joints: Vec<Joint>,
     pub(super) held: Vec<Held>,
     pub(super) drivers: Vec<Driver>,
+    pub(super) freedoms: Vec<Freedom>,
+    pub(super) forces: Vec<Force>,
     pub(super) stops: Vec<Stop>,
     pub(super) outputs: Vec<PointRef>,
     /// Acceleration \[length/s²\].
@@ -101,6 +114,25 @@ pub(super) struct Mass {
     pub(super) mass: f64,
     pub(super) inertia: f64,
     pub(super) center: [f64; 2],
+}
+
+impl Mass {
+    /// Returns the mass of two bodies that are fixed to each other; `metres` is the unit of the
+    /// centres.
+    pub(super) fn with(&self, other: &Self, metres: f64) -> Self {
+        let mass = self.mass + other.mass;
+        let center =
+            [0, 1].map(|k| (self.mass * self.center[k] + other.mass * other.center[k]) / mass);
+        let steiner = |part: &Self| {
+            let off = [0, 1].map(|k| (part.center[k] - center[k]) * metres);
+            part.inertia + part.mass * (off[0] * off[0] + off[1] * off[1])
+        };
+        Self {
+            mass,
+            inertia: steiner(self) + steiner(other),
+            center,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -190,6 +222,41 @@ pub(super) enum DriverSource {
     Motion(String),
 }
 
+/// A coordinate that follows from the forces, from where it is drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Freedom {
+    pub(super) name: String,
+    pub(super) coordinate: Coordinate,
+    pub(super) from: PointRef,
+    pub(super) to: PointRef,
+    /// In the coordinate's unit per second.
+    pub(super) velocity: f64,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Force {
+    pub(super) name: String,
+    pub(super) kind: ForceKind,
+}
+
+/// Forces as expressions in SI units.
+#[derive(Clone, Debug)]
+pub(super) enum ForceKind {
+    /// Along the distance of two points: positive pushes them apart.
+    Along {
+        from: PointRef,
+        to: PointRef,
+        value: String,
+    },
+    /// On a body at a point, along the axes of another one; without it of ground.
+    At {
+        point: PointRef,
+        axes: Option<PointRef>,
+        value: [String; 2],
+        torque: String,
+    },
+}
+
 /// Limits of a coordinate, as expressions in SI units.
 #[derive(Clone, Debug)]
 pub(super) struct Stop {
@@ -214,6 +281,8 @@ impl Draft {
             joints: Vec::new(),
             held: Vec::new(),
             drivers: Vec::new(),
+            freedoms: Vec::new(),
+            forces: Vec::new(),
             stops: Vec::new(),
             outputs: Vec::new(),
             gravity: None,
@@ -371,7 +440,15 @@ impl Draft {
         self.outputs.retain(|point| !dropped(point.body));
         self.drivers
             .retain(|driver| !dropped(driver.from.body) && !dropped(driver.to.body));
-        if self.drivers.is_empty() {
+        self.freedoms
+            .retain(|freedom| !dropped(freedom.from.body) && !dropped(freedom.to.body));
+        self.forces.retain(|force| match &force.kind {
+            ForceKind::Along { from, to, .. } => !dropped(from.body) && !dropped(to.body),
+            ForceKind::At { point, axes, .. } => {
+                !dropped(point.body) && !axes.is_some_and(|axes| dropped(axes.body))
+            }
+        });
+        if self.drivers.is_empty() && self.freedoms.is_empty() {
             self.choose_driver();
         }
         Ok(())

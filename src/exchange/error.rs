@@ -106,6 +106,14 @@ pub enum Error {
         /// Its type in the source.
         class: String,
     },
+    /// A motion that no driver of biela replaces.
+    #[error("motion `{motion}` has the type `{class}`, which biela does not have")]
+    UnknownMotion {
+        /// Name of the motion.
+        motion: String,
+        /// Its type in the source.
+        class: String,
+    },
     /// A slider without a body that carries its limits.
     #[error(
         "slider `{slider}` has no link that carries both ends of its way; put them on one link or anchor both"

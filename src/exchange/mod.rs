@@ -12,6 +12,8 @@
 //! | `names`, `text` | the mechanism file of a draft |
 //! | `pins` | [`Pins`]: a mechanism as links through pins, for links of PMKS+ and JSON of pylinkage |
 //! | `ssp` | an FMU as a system of SSP |
+//! | `freedom` | coordinates that nothing drives, for free motion |
+//! | `others` | entries of a source that a reader does not take |
 //! | `note` | [`Note`]: what did not come over, or came over changed |
 //! | `error` | [`Error`]: why a file gives no mechanism |
 //!
@@ -21,9 +23,11 @@ mod asmt;
 mod draft;
 mod dxf;
 mod error;
+mod freedom;
 mod linkage2;
 mod names;
 mod note;
+mod others;
 mod pins;
 mod pmks;
 mod pylinkage;
@@ -59,7 +63,8 @@ pub enum Format {
 }
 
 impl Format {
-    /// Returns the format of a file by its extension, in small letters; otherwise by its content.
+    /// Returns the format of a file by its extension, in small letters; otherwise by its content. A file
+    /// with an extension of its own is one of these only if its content says so without doubt.
     ///
     /// # Errors
     ///
@@ -72,17 +77,18 @@ impl Format {
             "dxf" => return Ok(Self::Dxf),
             _ => {}
         }
+        let is_text = matches!(extension, "" | "txt" | "url");
         let start = String::from_utf8_lossy(&content[..content.len().min(4096)]);
         let start = start.trim_start_matches('\u{feff}').trim_start();
         if start.starts_with("OndselSolver") || start.starts_with("freeCAD:") {
             Ok(Self::Asmt)
         } else if start.starts_with('<') && start.contains("<linkage2") {
             Ok(Self::Linkage)
-        } else if start.starts_with('{') {
-            Ok(Self::Pylinkage)
         } else if start.starts_with("AutoCAD Binary DXF") || dxf::is_start(start) {
             Ok(Self::Dxf)
-        } else if pmks::is_start(start) {
+        } else if is_text && start.starts_with('{') {
+            Ok(Self::Pylinkage)
+        } else if is_text && pmks::is_start(start) {
             Ok(Self::Pmks)
         } else {
             Err(Error::UnknownFormat)

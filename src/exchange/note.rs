@@ -62,14 +62,46 @@ pub enum Note {
         /// Reason.
         reason: &'static str,
     },
-    /// Forces.
-    #[error("{count} force(s) are left out: enter them under [forces]")]
-    Forces {
-        /// Number of forces.
-        count: usize,
+    /// Velocities at the start that nothing takes up.
+    #[error("velocities at the start are left out: {reason}")]
+    StartVelocities {
+        /// Reason.
+        reason: &'static str,
     },
-    /// Parts of the file that are only seen.
-    #[error("attributes of the picture are left out: {what}")]
+    /// Coordinates that the forces move.
+    #[error("the source moves `{names}` by forces: freedoms, from where they are drawn")]
+    Free {
+        /// Names of the freedoms.
+        names: String,
+    },
+    /// A body that joints do not keep in the plane.
+    #[error("`{name}` is held by ball joints only: it is taken as its projection on the plane")]
+    Projected {
+        /// Name in the source.
+        name: String,
+    },
+    /// A rod that is inclined to the plane.
+    #[error("rod `{name}` is inclined to the plane: its length there is {length}")]
+    Inclined {
+        /// Name of the joint.
+        name: String,
+        /// Length in the plane, in the file's unit.
+        length: String,
+    },
+    /// Units of masses.
+    #[error("masses and inertias are taken as {unit}")]
+    MassUnit {
+        /// Names of both units.
+        unit: &'static str,
+    },
+    /// The sense of an input's own speed.
+    #[error("input `{name}` has its own speed: it was taken as counter-clockwise")]
+    OwnSpeed {
+        /// Name of the pin.
+        name: String,
+    },
+    /// Parts of the file that are only seen, or that only its program needs.
+    #[error("left out, as they do not change the mechanism: {what}")]
     Display {
         /// Kinds of what was seen.
         what: String,

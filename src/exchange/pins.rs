@@ -16,7 +16,7 @@ pub struct Pins {
     pub(super) name: String,
     pub(super) pins: Vec<Pin>,
     pub(super) links: Vec<Link>,
-    pub(super) input: Option<Input>,
+    pub(super) inputs: Vec<Input>,
     /// Remarks on what is left out.
     pub notes: Vec<Note>,
 }
@@ -83,8 +83,9 @@ impl Pins {
         reader.pins();
         reader.slides()?;
         reader.points();
+        reader.levers();
         reader.links();
-        reader.input();
+        reader.inputs();
         reader.pins.drop_unused();
         Ok(reader.pins)
     }
@@ -101,7 +102,7 @@ impl Pins {
         for pin in self.links.iter_mut().flat_map(|link| &mut link.pins) {
             *pin = new(*pin);
         }
-        if let Some(input) = &mut self.input {
+        for input in &mut self.inputs {
             input.pin = new(input.pin);
         }
         let mut index = 0..;
@@ -263,6 +264,33 @@ impl Reader<'_> {
         }
     }
 
+    /// Gives bodies with one pin, which are no links there, a point apart from it. Blocks of sliders
+    /// are links with one pin.
+    fn levers(&mut self) {
+        for (index, marker) in self.mechanism.markers.iter().enumerate() {
+            let Some(body) = marker.body else { continue };
+            let [pin] = self.of_body[body.index()][..] else {
+                continue;
+            };
+            let (at, _) = self.place(MarkerId(index));
+            let of = self.pins.pins[pin].at;
+            let is_apart = (at[0] - of[0]).hypot(at[1] - of[1]) > self.near;
+            if self.pins.pins[pin].way.is_none() && is_apart {
+                self.pin(MarkerId(index), &marker.name);
+            }
+        }
+        for (body, pins) in self.of_body.iter().enumerate() {
+            let is_block = |pin: &usize| self.pins.pins[*pin].way.is_some();
+            if pins.len() < 2 && !pins.iter().any(is_block) {
+                self.pins.notes.push(Note::LeftOut {
+                    kind: "body",
+                    name: self.mechanism.bodies[body].name.clone(),
+                    reason: "it has no two points, as a link has",
+                });
+            }
+        }
+    }
+
     /// Adds points of interest.
     fn points(&mut self) {
         for &marker in &self.mechanism.outputs.markers {
@@ -285,8 +313,8 @@ impl Reader<'_> {
         self.pins.links = links.chain(rods).collect();
     }
 
-    /// Takes over the first driver that turns a link about a pin on ground; others are told.
-    fn input(&mut self) {
+    /// Takes over drivers that turn links about pins on ground, one for each pin; others are told.
+    fn inputs(&mut self) {
         let start = self.solver.pose().time;
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             let coordinate = driver.coordinate;
@@ -302,17 +330,17 @@ impl Reader<'_> {
                 Some((*pin, body.index()))
             });
             match turned {
-                Some((pin, link)) if self.pins.input.is_none() => {
+                Some((pin, link)) if self.pins.inputs.iter().all(|input| input.pin != pin) => {
                     let id = crate::mechanism::DriverId(index);
                     let speed = driver
                         .motion()
                         .map(|_| rounded(self.solver.motion(id, start).first(), 9));
-                    self.pins.input = Some(Input { pin, link, speed });
+                    self.pins.inputs.push(Input { pin, link, speed });
                 }
                 _ => self.pins.notes.push(Note::LeftOut {
                     kind: "driver",
                     name: driver.name.clone(),
-                    reason: "one link is driven, about a pin on ground",
+                    reason: "links are driven about pins on ground",
                 }),
             }
         }

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::draft::{
-    BodyRef, Coordinate, Draft, Driver, DriverSource, GROUND, JointKind, LengthUnit, PointRef,
-    Stop, Wheels,
+    BodyRef, Coordinate, Draft, Driver, DriverSource, ForceKind, GROUND, JointKind, LengthUnit,
+    PointRef, Stop, Wheels,
 };
 use super::names::Names;
 use crate::mechanism::write::{degrees, in_unit};
@@ -20,6 +20,8 @@ struct Given {
     joints: Vec<String>,
     held: Vec<String>,
     drivers: Vec<String>,
+    freedoms: Vec<String>,
+    forces: Vec<String>,
     stops: Vec<String>,
 }
 
@@ -58,6 +60,8 @@ impl Draft {
         let joints = all(self.joints.iter().map(|j| &j.name).collect(), "joint");
         let held = all(self.held.iter().map(|h| &h.name).collect(), "angle");
         let drivers = all(self.drivers.iter().map(|d| &d.name).collect(), "driver");
+        let freedoms = all(self.freedoms.iter().map(|f| &f.name).collect(), "freedom");
+        let forces = all(self.forces.iter().map(|f| &f.name).collect(), "force");
         let stops = all(self.stops.iter().map(|s| &s.name).collect(), "stop");
         let markers = self.bodies.iter().map(|body| {
             let mut names = Names::of_markers();
@@ -70,6 +74,8 @@ impl Draft {
             joints,
             held,
             drivers,
+            freedoms,
+            forces,
             stops,
         }
     }
@@ -267,6 +273,8 @@ impl Writer<'_> {
                 "{name:width$} = {{ coordinate = \"{kind}\", {markers}, {value} }}{origin}"
             );
         }
+        self.freedoms(text);
+        self.forces(text);
         if !draft.stops.is_empty() {
             text.push_str("\n[stops]\n");
         }
@@ -280,6 +288,70 @@ impl Writer<'_> {
                 text,
                 "{name:width$} = {{ coordinate = \"{kind}\", {markers}{limits} }}{origin}"
             );
+        }
+    }
+
+    fn freedoms(&self, text: &mut String) {
+        let draft = self.draft;
+        if !draft.freedoms.is_empty() {
+            text.push_str("\n[freedoms]\n");
+        }
+        let width = widest(&self.given.freedoms);
+        for (freedom, name) in draft.freedoms.iter().zip(&self.given.freedoms) {
+            let markers = self.pair(freedom.from, freedom.to);
+            let coordinate = freedom.coordinate;
+            let start = draft.drawn(coordinate, freedom.from, freedom.to);
+            let start = self.value(coordinate, start);
+            let velocity = match (freedom.velocity, coordinate) {
+                (0.0, _) => String::new(),
+                (velocity, Coordinate::Angle) => {
+                    format!(", velocity = {}", shortest(velocity, 12))
+                }
+                (velocity, _) => format!(", velocity = {}", self.length(velocity)),
+            };
+            let kind = coordinate.name();
+            let origin = origin(name, &freedom.name);
+            let _ = writeln!(
+                text,
+                "{name:width$} = {{ coordinate = \"{kind}\", {markers}, start = {start}{velocity} }}{origin}"
+            );
+        }
+    }
+
+    fn forces(&self, text: &mut String) {
+        let draft = self.draft;
+        if !draft.forces.is_empty() {
+            text.push_str("\n[forces]\n");
+        }
+        let width = widest(&self.given.forces);
+        for (force, name) in draft.forces.iter().zip(&self.given.forces) {
+            let origin = origin(name, &force.name);
+            let keys = match &force.kind {
+                ForceKind::Along { from, to, value } => {
+                    let markers = self.pair(*from, *to);
+                    format!(
+                        "coordinate = \"distance\", {markers}, value = {}",
+                        quoted(value)
+                    )
+                }
+                ForceKind::At {
+                    point,
+                    axes,
+                    value: [x, y],
+                    torque,
+                } => {
+                    let mut keys = format!("marker = {}", self.marker(*point));
+                    if let Some(axes) = axes {
+                        let _ = write!(keys, ", axes = {}", self.marker(*axes));
+                    }
+                    let _ = write!(keys, ", value = [{}, {}]", quoted(x), quoted(y));
+                    if torque != "0" {
+                        let _ = write!(keys, ", torque = {}", quoted(torque));
+                    }
+                    keys
+                }
+            };
+            let _ = writeln!(text, "{name:width$} = {{ {keys} }}{origin}");
         }
     }
 
@@ -373,14 +445,18 @@ fn limits(stop: &Stop) -> String {
     let mut text = String::new();
     for (key, limit) in [("min", &stop.min), ("max", &stop.max)] {
         if let Some(limit) = limit {
-            // A plain number needs no quotes.
-            let _ = match limit.parse::<f64>() {
-                Ok(_) => write!(text, ", {key} = {limit}"),
-                Err(_) => write!(text, ", {key} = \"{limit}\""),
-            };
+            let _ = write!(text, ", {key} = {}", quoted(limit));
         }
     }
     text
+}
+
+/// Returns an expression as a value of the file: a plain number needs no quotes.
+fn quoted(expression: &str) -> String {
+    match expression.parse::<f64>() {
+        Ok(_) => expression.to_owned(),
+        Err(_) => format!("\"{expression}\""),
+    }
 }
 
 /// Returns a comment on the name in the source, if the file has another one.

@@ -54,7 +54,12 @@ impl Import {
             file: name.clone(),
             error,
         };
-        let format = Format::of(&extension(&self.file), &content).map_err(failed)?;
+        // What stands behind the last point of a link is no extension.
+        let extension = match self.link() {
+            Some(_) => String::new(),
+            None => extension(&self.file),
+        };
+        let format = Format::of(&extension, &content).map_err(failed)?;
         let stem = match self.link() {
             Some(_) => OsStr::new("mechanism"),
             None => Path::new(&name).file_stem().unwrap_or_default(),

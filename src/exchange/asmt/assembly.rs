@@ -2,9 +2,11 @@
 
 use std::collections::HashMap;
 
+use super::keys;
 use super::place::{Place, Plane, Vector, are_parallel, are_perpendicular};
 use super::tree::{Node, Tree};
 use crate::exchange::error::Error;
+use crate::exchange::others::Others;
 
 pub(super) struct Assembly {
     pub(super) name: String,
@@ -15,8 +17,9 @@ pub(super) struct Assembly {
     pub(super) joints: Vec<Joint>,
     pub(super) motions: Vec<Motion>,
     pub(super) limits: Vec<Limit>,
-    /// Number of forces and torques.
-    pub(super) forces: usize,
+    pub(super) forces: Vec<ForceTorque>,
+    /// Entries that are not taken.
+    pub(super) others: Others,
     pub(super) gravity: Vector,
     /// Start, stop and step \[s\].
     pub(super) times: Option<[f64; 3]>,
@@ -26,6 +29,9 @@ pub(super) struct Part {
     pub(super) name: String,
     pub(super) place: Place,
     pub(super) mass: PartMass,
+    /// Of its origin.
+    pub(super) velocity: Vector,
+    pub(super) omega: Vector,
 }
 
 pub(super) struct PartMass {
@@ -61,6 +67,24 @@ pub(super) struct Motion {
     pub(super) text: String,
 }
 
+/// A force and torque between two markers, as texts by their keys.
+pub(super) struct ForceTorque {
+    pub(super) class: String,
+    pub(super) name: String,
+    pub(super) markers: [Marker; 2],
+    values: Vec<(String, String)>,
+}
+
+impl ForceTorque {
+    /// Returns the text of a key, `0` if it is empty or missing.
+    pub(super) fn value(&self, key: &str) -> &str {
+        let mut values = self.values.iter();
+        let found = values.find(|(known, _)| known == key);
+        let text = found.map_or("", |(_, text)| text.trim());
+        if text.is_empty() { "0" } else { text }
+    }
+}
+
 pub(super) struct Limit {
     pub(super) name: String,
     pub(super) turns: bool,
@@ -93,7 +117,8 @@ impl Assembly {
             joints: Vec::new(),
             motions: Vec::new(),
             limits: Vec::new(),
-            forces: 0,
+            forces: Vec::new(),
+            others: Others::default(),
             gravity: [0.0; 3],
             times: None,
             name,
@@ -122,8 +147,12 @@ impl Assembly {
             let read = assembly.read_limit(limit, &by_name)?;
             assembly.limits.push(read);
         }
-        let forces = root.child("ForceTorques");
-        assembly.forces = forces.map_or(0, |forces| forces.children().count());
+        for list in ["ForceTorques", "ForcesTorques"] {
+            for force in root.child(list).into_iter().flat_map(Node::children) {
+                let read = assembly.read_force(force)?;
+                assembly.forces.push(read);
+            }
+        }
         if root.child("ConstantGravity").is_some() {
             assembly.gravity = root.numbers("ConstantGravity", "the assembly")?;
         }
@@ -133,6 +162,7 @@ impl Assembly {
             let [start, stop, step] = times;
             assembly.times = (stop > start && step > 0.0).then_some(times);
         }
+        keys::sort(root, &mut assembly.others);
         Ok(assembly)
     }
 
@@ -170,7 +200,18 @@ impl Assembly {
                 is_centre: true,
             });
         }
-        self.parts.push(Part { name, place, mass });
+        let vector = |key| match node.child(key) {
+            None => Ok([0.0; 3]),
+            Some(_) => node.numbers(key, &place_of),
+        };
+        let (velocity, omega) = (vector("Velocity3D")?, vector("Omega3D")?);
+        self.parts.push(Part {
+            name,
+            place,
+            mass,
+            velocity,
+            omega,
+        });
         self.read_markers(node, &path, Some(part), &place)
     }
 
@@ -243,6 +284,25 @@ impl Assembly {
             name,
             markers,
             text,
+        })
+    }
+
+    fn read_force(&self, node: Node) -> Result<ForceTorque, Error> {
+        let class = node.text().to_owned();
+        let name = node.required_value("Name", &class)?.to_owned();
+        let place = format!("force `{name}`");
+        let values = node.children().filter_map(|child| {
+            let text = child.children().next()?.text().to_owned();
+            Some((child.text().to_owned(), text))
+        });
+        Ok(ForceTorque {
+            class,
+            markers: [
+                self.marker(node.required_value("MarkerI", &place)?, &place)?,
+                self.marker(node.required_value("MarkerJ", &place)?, &place)?,
+            ],
+            values: values.collect(),
+            name,
         })
     }
 

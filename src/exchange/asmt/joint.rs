@@ -1,22 +1,24 @@
-//! Joints, motions and limits in the plane.
+//! Joints in the plane.
 
 use std::f64::consts::FRAC_PI_2;
 
 use super::Reader;
-use super::assembly::{Joint, Limit, Marker, Motion};
-use super::expression::translated;
-use crate::exchange::draft::{
-    BodyRef, Coordinate, Draft, Driver, DriverSource, GROUND, Held, JointKind, LengthUnit,
-    PointRef, Stop, Wheels,
-};
+use super::assembly::{Joint, Marker};
+use super::place::dot;
+use crate::exchange::draft::{BodyRef, Draft, GROUND, Held, JointKind, PointRef, Wheels};
 use crate::exchange::error::Error;
 use crate::exchange::note::Note;
+use crate::mechanism::shown;
+
+/// Difference of depths, in parts of a rod's length, that leaves it in the plane: it changes the length
+/// by half its square.
+pub(super) const DEPTH: f64 = 1e-6;
 
 impl Reader<'_> {
     /// Adds a joint, or notes that the plane makes it superfluous.
     pub(super) fn joint(&mut self, joint: &Joint) -> Result<(), Error> {
         let [i, j] = &joint.markers;
-        let bodies = [i, j].map(|marker| marker.part.map_or(GROUND, |part| self.bodies[part]));
+        let bodies = [i, j].map(|marker| self.body(marker));
         if bodies[0] == bodies[1] {
             // A part that is fixed to the assembly has been told.
             if joint.class != "FixedJoint" {
@@ -54,10 +56,9 @@ impl Reader<'_> {
                 let angle = self.plane.angle(axes[0]) - FRAC_PI_2;
                 self.slide(joint, angle, distance, is_within[1]);
             }
-            "SphSphJoint" => self.link(joint, distance)?,
-            "RevRevJoint" | "CylSphJoint" | "RevCylJoint" if is_normal[0] => {
-                self.link(joint, distance)?;
-            }
+            "SphSphJoint" => self.inclined(joint, distance)?,
+            "RevRevJoint" if is_normal[0] => self.inclined(joint, distance)?,
+            "CylSphJoint" | "RevCylJoint" if is_normal[0] => self.link(joint, distance)?,
             "ParallelAxesJoint" | "PerpendicularJoint" | "AngleJoint"
                 if is_normal[0] || is_normal[1] =>
             {
@@ -108,7 +109,7 @@ impl Reader<'_> {
         self.draft.join(&self.name(&joint.name), kind, from, to);
     }
 
-    fn with_x_axis(&mut self, marker: &Marker) -> PointRef {
+    pub(super) fn with_x_axis(&mut self, marker: &Marker) -> PointRef {
         let angle = self.x_axis(marker);
         self.place(marker, angle)
     }
@@ -152,6 +153,21 @@ impl Reader<'_> {
             points[0],
             points[1],
         );
+    }
+
+    /// Adds a rod whose ends stay at their depths: its projection.
+    fn inclined(&mut self, joint: &Joint, distance: f64) -> Result<(), Error> {
+        let [i, j] = joint.markers.each_ref().map(|marker| marker.place.at);
+        let depth = dot([0, 1, 2].map(|k| j[k] - i[k]), self.plane.normal);
+        if depth.abs() <= DEPTH * distance {
+            return self.link(joint, distance);
+        }
+        let length = ((distance - depth) * (distance + depth)).max(0.0).sqrt();
+        self.draft.note(Note::Inclined {
+            name: self.name(&joint.name),
+            length: shown(length),
+        });
+        self.link(joint, length)
     }
 
     fn link(&mut self, joint: &Joint, distance: f64) -> Result<(), Error> {
@@ -215,128 +231,6 @@ impl Reader<'_> {
             pinion,
             rack,
         );
-        Ok(())
-    }
-
-    /// Adds a driver for a motion.
-    pub(super) fn motion(&mut self, motion: &Motion) -> Result<(), Error> {
-        let [i, j] = &motion.markers;
-        let out_of_plane = || Error::OutOfPlane {
-            joint: motion.name.clone(),
-            class: motion.class.clone(),
-        };
-        let z = i.place.z();
-        let (coordinate, side) = match &*motion.class {
-            "RotationalMotion" if self.plane.is_normal(z) => {
-                (Coordinate::Angle, self.plane.side(z))
-            }
-            "TranslationalMotion" if self.plane.is_within(z) => (Coordinate::X, 1.0),
-            "RotationalMotion" | "TranslationalMotion" => return Err(out_of_plane()),
-            class => {
-                self.draft.note(Note::Motion {
-                    name: motion.name.clone(),
-                    text: class.to_owned(),
-                });
-                return Ok(());
-            }
-        };
-        let (from, to) = self.measured(i, j, coordinate);
-        let text = translated(&motion.text);
-        let source = match text {
-            Some(text) => DriverSource::Motion(self.scaled(text, coordinate, side)),
-            None => {
-                self.draft.note(Note::Motion {
-                    name: motion.name.clone(),
-                    text: motion.text.clone(),
-                });
-                DriverSource::Input
-            }
-        };
-        let name = self.name(&motion.name);
-        self.draft.drivers.push(Driver {
-            name,
-            coordinate,
-            from,
-            to,
-            source,
-            limits: None,
-        });
-        Ok(())
-    }
-
-    /// Returns the markers between which a coordinate of a joint is measured.
-    fn measured(&mut self, i: &Marker, j: &Marker, coordinate: Coordinate) -> (PointRef, PointRef) {
-        match coordinate {
-            Coordinate::Angle => (self.with_x_axis(i), self.with_x_axis(j)),
-            _ => {
-                let angle = self.plane.angle(i.place.z());
-                (self.place(i, Some(angle)), self.place(j, Some(angle)))
-            }
-        }
-    }
-
-    /// Returns an expression with the sense of the plane, in SI units.
-    fn scaled(&self, text: String, coordinate: Coordinate, side: f64) -> String {
-        let unit = self.draft.unit;
-        let scaled = match coordinate {
-            Coordinate::Angle => text,
-            _ if unit == LengthUnit::Metre => text,
-            _ if text.parse::<f64>().is_ok() => format!("{text}*{}", unit.name()),
-            _ => format!("({text})*{}", unit.name()),
-        };
-        match side < 0.0 {
-            true => format!("-({scaled})"),
-            false => scaled,
-        }
-    }
-
-    /// Adds a stop for a limit; two of one joint are one stop.
-    pub(super) fn limit(&mut self, limit: &Limit) -> Result<(), Error> {
-        let [i, j] = &limit.markers;
-        let z = i.place.z();
-        let note = |reason| Note::Limit {
-            name: limit.name.clone(),
-            reason,
-        };
-        let (coordinate, side) = if limit.turns && self.plane.is_normal(z) {
-            (Coordinate::Angle, self.plane.side(z))
-        } else if !limit.turns && self.plane.is_within(z) {
-            (Coordinate::X, 1.0)
-        } else {
-            self.draft.note(note("it limits nothing in the plane"));
-            return Ok(());
-        };
-        let value = translated(&limit.text).filter(|_| !limit.text.contains("time"));
-        let Some(value) = value else {
-            self.draft.note(note("its value has no counterpart"));
-            return Ok(());
-        };
-        let value = self.scaled(value, coordinate, side);
-        let at_least = (limit.kind == "=>") == (side > 0.0);
-        let (from, to) = self.measured(i, j, coordinate);
-        let mut stops = self.draft.stops.iter_mut();
-        let same =
-            stops.find(|stop| stop.coordinate == coordinate && stop.from == from && stop.to == to);
-        let stop = match same {
-            Some(stop) => stop,
-            None => {
-                let name = self.name(&limit.name);
-                self.draft.stops.push(Stop {
-                    name,
-                    coordinate,
-                    from,
-                    to,
-                    min: None,
-                    max: None,
-                });
-                let last = self.draft.stops.len() - 1;
-                &mut self.draft.stops[last]
-            }
-        };
-        match at_least {
-            true => stop.min = Some(value),
-            false => stop.max = Some(value),
-        }
         Ok(())
     }
 }

@@ -4,14 +4,20 @@
 //! | file | subject |
 //! |---|---|
 //! | `tree` | lines that are indented by tabs |
+//! | `keys` | entries that are taken, and those that do not change the mechanism |
 //! | `place` | places in space, and the plane of the mechanism |
 //! | `assembly` | parts, markers, joints and motions of the file |
-//! | `joint` | joints, motions and limits in the plane |
-//! | `expression` | motions as expressions of mechanism files |
+//! | `joint` | joints in the plane |
+//! | `motion` | motions and limits of joints |
+//! | `force` | forces, and the motion that they make |
+//! | `expression` | motions and forces as expressions of mechanism files |
 
 mod assembly;
 mod expression;
+mod force;
 mod joint;
+mod keys;
+mod motion;
 mod place;
 mod tree;
 
@@ -30,7 +36,8 @@ const FREECAD: &str = "OndselAssembly";
 /// Reads a file.
 pub(super) fn read(text: &str, length: Option<LengthUnit>, draft: &mut Draft) -> Result<(), Error> {
     let tree = Tree::read(text)?;
-    let assembly = Assembly::read(&tree)?;
+    let mut assembly = Assembly::read(&tree)?;
+    let entries = std::mem::take(&mut assembly.others);
     draft.unit = match length {
         Some(unit) => unit,
         None => {
@@ -71,13 +78,14 @@ pub(super) fn read(text: &str, length: Option<LengthUnit>, draft: &mut Draft) ->
     for limit in &assembly.limits {
         reader.limit(limit)?;
     }
-    reader.points();
-    if assembly.forces > 0 {
-        reader.draft.note(Note::Forces {
-            count: assembly.forces,
-        });
+    for force in &assembly.forces {
+        reader.force(force);
     }
+    reader.note_projected();
+    reader.freedoms();
+    reader.points();
     reader.draft.simulation = assembly.times;
+    entries.note(reader.draft);
     Ok(())
 }
 
@@ -123,6 +131,10 @@ impl Reader<'_> {
         }
     }
 
+    fn body(&self, marker: &assembly::Marker) -> BodyRef {
+        marker.part.map_or(GROUND, |part| self.bodies[part])
+    }
+
     /// Adds the markers of moving bodies that no joint has.
     fn points(&mut self) {
         let known: HashSet<String> = self
@@ -131,7 +143,7 @@ impl Reader<'_> {
             .map(|(_, path, _)| path.clone())
             .collect();
         for marker in &self.assembly.markers {
-            let body = marker.part.map_or(GROUND, |part| self.bodies[part]);
+            let body = self.body(marker);
             if body != GROUND && !marker.is_centre && !known.contains(&marker.path) {
                 self.place(marker, None);
             }
@@ -174,7 +186,7 @@ impl Reader<'_> {
 
     /// Returns the point of a marker with an x-axis in this direction, added if it is new.
     fn place(&mut self, marker: &assembly::Marker, angle: Option<f64>) -> PointRef {
-        let body = marker.part.map_or(GROUND, |part| self.bodies[part]);
+        let body = self.body(marker);
         let at = self.plane.point(marker.place.at);
         let key = (
             body,

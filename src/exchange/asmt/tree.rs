@@ -1,4 +1,4 @@
-//! Lines that are indented by tabs, as a tree.
+//! Lines that are indented by tabs, or by blanks in place of them, as a tree.
 
 use crate::exchange::error::{self, Error};
 
@@ -13,6 +13,8 @@ pub(super) struct Tree<'a> {
 struct Line<'a> {
     text: &'a str,
     depth: usize,
+    /// Its number in the file, from 1.
+    number: usize,
     /// Index behind the last line below it.
     end: usize,
 }
@@ -24,14 +26,31 @@ pub(super) struct Node<'a> {
     index: usize,
 }
 
+/// Returns the number of blanks that stand for a tab: those of the least indented line with blanks
+/// alone.
+fn blanks_per_tab(text: &str) -> usize {
+    let blanks = text.lines().filter_map(|line| {
+        let rest = line.trim_start_matches(' ');
+        let count = line.len() - rest.len();
+        (count > 0 && !rest.is_empty() && !rest.starts_with('\t')).then_some(count)
+    });
+    blanks.min().unwrap_or(1)
+}
+
 impl<'a> Tree<'a> {
     pub(super) fn read(text: &'a str) -> Result<Self, Error> {
+        let blanks = blanks_per_tab(text);
         let mut lines: Vec<Line> = Vec::new();
         let mut open: Vec<usize> = Vec::new();
-        for (index, line) in text.lines().enumerate() {
-            let depth = line.bytes().take_while(|byte| *byte == b'\t').count();
+        let all = text.lines().enumerate();
+        // An empty value has tabs; lines without them part nothing.
+        for (number, line) in all.filter(|(_, line)| !line.is_empty()) {
+            let index = lines.len();
+            let indent = line.len() - line.trim_start_matches(['\t', ' ']).len();
+            let tabs = line[..indent].matches('\t').count();
+            let depth = tabs + (indent - tabs) / blanks;
             if depth > DEEPEST {
-                return Err(Error::TooDeep { line: index + 1 });
+                return Err(Error::TooDeep { line: number + 1 });
             }
             while open.last().is_some_and(|last| lines[*last].depth >= depth) {
                 let last = open.pop().unwrap_or_default();
@@ -42,6 +61,7 @@ impl<'a> Tree<'a> {
             lines.push(Line {
                 text,
                 depth,
+                number: number + 1,
                 end: index + 1,
             });
         }
@@ -70,7 +90,7 @@ impl<'a> Node<'a> {
 
     /// Returns its line in the file, from 1.
     pub(super) fn line(self) -> usize {
-        self.index + 1
+        self.tree.lines[self.index].number
     }
 
     /// Returns the lines directly below it.

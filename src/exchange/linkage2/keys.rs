@@ -1,12 +1,9 @@
 //! Elements and attributes of a document: those that are taken, and those that only concern the
 //! picture.
 
-use std::collections::BTreeSet;
-
 use super::xml::Element;
 use crate::exchange::draft::Draft;
-use crate::exchange::error::start_of;
-use crate::exchange::note::Note;
+use crate::exchange::others::Others;
 
 /// Element, attributes and children that the reader takes, and those of the picture only.
 struct Keys {
@@ -56,7 +53,15 @@ const KEYS: [Keys; 9] = [
             "fastenconnector",
             "measurementelement",
         ],
-        seen: &["color", "usercolor", "linesize", "drawcircle", "shape", "labels", "angles"],
+        seen: &[
+            "color",
+            "usercolor",
+            "linesize",
+            "drawcircle",
+            "shape",
+            "labels",
+            "angles",
+        ],
     },
     Keys {
         element: "Link",
@@ -115,68 +120,35 @@ const KEYS: [Keys; 9] = [
     },
 ];
 
-/// Most names that a note lists.
-const MOST: usize = 20;
-
-/// Names that the reader does not take.
-#[derive(Default)]
-struct Others {
-    seen: BTreeSet<&'static str>,
-    unknown: BTreeSet<String>,
-}
-
-/// Notes elements and attributes that concern the picture only, and those that are not known.
+/// Notes elements and attributes that do not change the mechanism, and those that are not known.
 pub(super) fn note_others(root: &Element, draft: &mut Draft) {
     let mut others = Others::default();
-    others.collect(root, "");
-    if !others.seen.is_empty() {
-        let what: Vec<&str> = others.seen.into_iter().collect();
-        draft.note(Note::Display {
-            what: what.join(", "),
-        });
-    }
-    if !others.unknown.is_empty() {
-        let what: Vec<String> = others.unknown.into_iter().take(MOST).collect();
-        draft.note(Note::UnknownKeys {
-            what: what.join(", "),
-        });
-    }
+    collect(&mut others, root, "");
+    others.note(draft);
 }
 
-impl Others {
-    /// Collects the names below an element; `parent` is the name of the element above.
-    fn collect(&mut self, element: &Element, parent: &str) {
-        let name = match (&*element.name, parent) {
-            ("connector", "Link" | "element") => "",
-            ("element", _) => "Link",
-            (name, _) => name,
-        };
-        let keys = KEYS.iter().find(|keys| keys.element == name);
-        let keys = keys.unwrap_or(&KEYS[KEYS.len() - 1]);
-        for (key, value) in &element.attributes {
-            if !matches!(&**value, "" | "0" | "false") {
-                self.sort(keys, key);
-            }
-        }
-        for child in &element.children {
-            // The selection is empty as a rule.
-            let is_empty = child.children.is_empty() && child.attributes.is_empty();
-            if child.name != "selected" || !is_empty {
-                self.sort(keys, &child.name);
-            }
-            if !keys.seen.contains(&&*child.name) {
-                self.collect(child, &element.name);
-            }
+/// Collects the names below an element; `parent` is the name of the element above.
+fn collect(others: &mut Others, element: &Element, parent: &str) {
+    let name = match (&*element.name, parent) {
+        ("connector", "Link" | "element") => "",
+        ("element", _) => "Link",
+        (name, _) => name,
+    };
+    let keys = KEYS.iter().find(|keys| keys.element == name);
+    let keys = keys.unwrap_or(&KEYS[KEYS.len() - 1]);
+    for (key, value) in &element.attributes {
+        if !matches!(&**value, "" | "0" | "false") {
+            others.sort(name, key, keys.taken, keys.seen);
         }
     }
-
-    fn sort(&mut self, keys: &Keys, key: &str) {
-        if let Some(known) = keys.seen.iter().find(|known| **known == key) {
-            self.seen.insert(known);
-        } else if !keys.taken.contains(&key) {
-            let place = keys.element;
-            let name = format!("{place} {key}");
-            self.unknown.insert(start_of(name.trim_start()));
+    for child in &element.children {
+        // The selection is empty as a rule.
+        let is_empty = child.children.is_empty() && child.attributes.is_empty();
+        if child.name != "selected" || !is_empty {
+            others.sort(name, &child.name, keys.taken, keys.seen);
+        }
+        if !keys.seen.contains(&&*child.name) {
+            collect(others, child, &element.name);
         }
     }
 }

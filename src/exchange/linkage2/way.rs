@@ -144,11 +144,14 @@ impl Document<'_> {
         };
         let link = |wheel: &Element| {
             let id = wheel.id()?;
-            self.link_by_id.get(id).copied().ok_or_else(|| Error::Unknown {
-                place: place.clone(),
-                kind: "link",
-                name: error::start_of(id),
-            })
+            self.link_by_id
+                .get(id)
+                .copied()
+                .ok_or_else(|| Error::Unknown {
+                    place: place.clone(),
+                    kind: "link",
+                    name: error::start_of(id),
+                })
         };
         let links = [link(a)?, link(b)?];
         let are_radii = element.is("sizeassize");

@@ -25,11 +25,20 @@ const CURVE: u64 = 16;
 /// Returns a link that opens a mechanism in PMKS+, to ten micrometres.
 #[must_use]
 pub fn pmks_link(pins: &Pins) -> String {
-    let speed = pins.input.as_ref().and_then(|input| input.speed);
-    let rpm = speed.map_or(RPM, |speed| speed * 30.0 / std::f64::consts::PI);
+    let in_rpm =
+        |speed: Option<f64>| speed.map_or(RPM, |speed| speed * 30.0 / std::f64::consts::PI);
+    let rpm = in_rpm(pins.inputs.first().and_then(|input| input.speed));
     // Whole turns per minute, and a mechanism that turns.
     let speed = rpm.abs().round().max(1.0);
-    let switches = SWITCHES + u64::from(rpm < 0.0);
+    // Where inputs have speeds of their own, the sign of each is its sense.
+    let are_alike = |common: f64| {
+        pins.inputs
+            .iter()
+            .all(|input| in_rpm(input.speed) == common)
+    };
+    let is_clockwise = rpm < 0.0 && are_alike(-speed);
+    let common = if is_clockwise { -speed } else { speed };
+    let switches = SWITCHES + u64::from(is_clockwise);
     let mut query = format!(
         "0{}.{SCALE}.{},0.{UNITS}.",
         digits(switches as f64),
@@ -41,14 +50,20 @@ pub fn pmks_link(pins: &Pins) -> String {
     let id = |pin: usize| format!("J{pin}");
     let mut ways = Vec::new();
     for (index, pin) in pins.pins.iter().enumerate() {
-        let is_input = pins.input.as_ref().is_some_and(|input| input.pin == index);
+        let input = pins.inputs.iter().find(|input| input.pin == index);
+        let is_input = input.is_some();
+        // A speed that is not the common one stands in the ninth field.
+        let own = input
+            .map(|input| in_rpm(input.speed))
+            .filter(|own| *own != common);
+        let own = own.map_or(String::new(), |own| format!(",,,,{}", decimal(own)));
         let mut flags = if pin.is_ground { GROUNDED } else { 0 };
         flags += if is_input { INPUT } else { 0 };
         flags += if pin.is_shown { CURVE } else { 0 };
         let (id, name) = (id(index), &pin.name);
         let _ = write!(
             query,
-            "{}{id},{name},{},0.",
+            "{}{id},{name},{},0{own}.",
             digits(flags as f64),
             at(pin.at)
         );

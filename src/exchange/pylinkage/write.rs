@@ -65,26 +65,24 @@ pub fn pylinkage_json(pins: &Pins) -> String {
         }
         let joints = link.pins.iter().filter(|pin| !is_tracker(**pin));
         let joints: Vec<String> = joints.map(|pin| id(pins, *pin)).collect();
-        links.push(
-            match pins.input.as_ref().filter(|input| input.link == index) {
-                None => json!({ "id": link.name, "type": "link", "joints": joints }),
-                Some(input) => {
-                    let others = link.pins.iter().filter(|pin| **pin != input.pin);
-                    let angle = others.map(|pin| {
-                        let [from, to] = [input.pin, *pin].map(|pin| pins.pins[pin].at);
-                        (to[1] - from[1]).atan2(to[0] - from[0])
-                    });
-                    json!({
-                        "id": link.name,
-                        "type": "driver",
-                        "joints": joints,
-                        "motor_joint": id(pins, input.pin),
-                        "angular_velocity": STEP.copysign(input.speed.unwrap_or(1.0)),
-                        "initial_angle": angle.take(1).sum::<f64>(),
-                    })
-                }
-            },
-        );
+        links.push(match pins.inputs.iter().find(|input| input.link == index) {
+            None => json!({ "id": link.name, "type": "link", "joints": joints }),
+            Some(input) => {
+                let others = link.pins.iter().filter(|pin| **pin != input.pin);
+                let angle = others.map(|pin| {
+                    let [from, to] = [input.pin, *pin].map(|pin| pins.pins[pin].at);
+                    (to[1] - from[1]).atan2(to[0] - from[0])
+                });
+                json!({
+                    "id": link.name,
+                    "type": "driver",
+                    "joints": joints,
+                    "motor_joint": id(pins, input.pin),
+                    "angular_velocity": STEP.copysign(input.speed.unwrap_or(1.0)),
+                    "initial_angle": angle.take(1).sum::<f64>(),
+                })
+            }
+        });
     }
     let mechanism = json!({
         "name": pins.name,

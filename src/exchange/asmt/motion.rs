@@ -1,0 +1,131 @@
+//! Motions and limits of joints in the plane.
+
+use super::Reader;
+use super::assembly::{Limit, Marker, Motion};
+use super::expression;
+use crate::exchange::draft::{Coordinate, Driver, DriverSource, LengthUnit, PointRef, Stop};
+use crate::exchange::error::Error;
+use crate::exchange::note::Note;
+
+impl Reader<'_> {
+    /// Adds a driver for a motion.
+    pub(super) fn motion(&mut self, motion: &Motion) -> Result<(), Error> {
+        let [i, j] = &motion.markers;
+        let out_of_plane = || Error::OutOfPlane {
+            joint: motion.name.clone(),
+            class: motion.class.clone(),
+        };
+        let z = i.place.z();
+        let (coordinate, side) = match &*motion.class {
+            "RotationalMotion" if self.plane.is_normal(z) => {
+                (Coordinate::Angle, self.plane.side(z))
+            }
+            "TranslationalMotion" if self.plane.is_within(z) => (Coordinate::X, 1.0),
+            "RotationalMotion" | "TranslationalMotion" => return Err(out_of_plane()),
+            class => {
+                return Err(Error::UnknownMotion {
+                    motion: motion.name.clone(),
+                    class: class.to_owned(),
+                });
+            }
+        };
+        let (from, to) = self.measured(i, j, coordinate);
+        let text = expression::motion(&motion.text);
+        let source = match text {
+            Some(text) => DriverSource::Motion(self.scaled(text, coordinate, side)),
+            None => {
+                self.draft.note(Note::Motion {
+                    name: motion.name.clone(),
+                    text: motion.text.clone(),
+                });
+                DriverSource::Input
+            }
+        };
+        let name = self.name(&motion.name);
+        self.draft.drivers.push(Driver {
+            name,
+            coordinate,
+            from,
+            to,
+            source,
+            limits: None,
+        });
+        Ok(())
+    }
+
+    /// Returns the markers between which a coordinate of a joint is measured.
+    fn measured(&mut self, i: &Marker, j: &Marker, coordinate: Coordinate) -> (PointRef, PointRef) {
+        match coordinate {
+            Coordinate::Angle => (self.with_x_axis(i), self.with_x_axis(j)),
+            _ => {
+                let angle = self.plane.angle(i.place.z());
+                (self.place(i, Some(angle)), self.place(j, Some(angle)))
+            }
+        }
+    }
+
+    /// Returns an expression with the sense of the plane, in SI units.
+    fn scaled(&self, text: String, coordinate: Coordinate, side: f64) -> String {
+        let unit = self.draft.unit;
+        let scaled = match coordinate {
+            Coordinate::Angle => text,
+            _ if unit == LengthUnit::Metre => text,
+            _ if text.parse::<f64>().is_ok() => format!("{text}*{}", unit.name()),
+            _ => format!("({text})*{}", unit.name()),
+        };
+        match side < 0.0 {
+            true => format!("-({scaled})"),
+            false => scaled,
+        }
+    }
+
+    /// Adds a stop for a limit; two of one joint are one stop.
+    pub(super) fn limit(&mut self, limit: &Limit) -> Result<(), Error> {
+        let [i, j] = &limit.markers;
+        let z = i.place.z();
+        let note = |reason| Note::Limit {
+            name: limit.name.clone(),
+            reason,
+        };
+        let (coordinate, side) = if limit.turns && self.plane.is_normal(z) {
+            (Coordinate::Angle, self.plane.side(z))
+        } else if !limit.turns && self.plane.is_within(z) {
+            (Coordinate::X, 1.0)
+        } else {
+            self.draft.note(note("it limits nothing in the plane"));
+            return Ok(());
+        };
+        let value = expression::constant(&limit.text);
+        let Some(value) = value else {
+            self.draft.note(note("its value has no counterpart"));
+            return Ok(());
+        };
+        let value = self.scaled(value, coordinate, side);
+        let at_least = (limit.kind == "=>") == (side > 0.0);
+        let (from, to) = self.measured(i, j, coordinate);
+        let mut stops = self.draft.stops.iter_mut();
+        let same =
+            stops.find(|stop| stop.coordinate == coordinate && stop.from == from && stop.to == to);
+        let stop = match same {
+            Some(stop) => stop,
+            None => {
+                let name = self.name(&limit.name);
+                self.draft.stops.push(Stop {
+                    name,
+                    coordinate,
+                    from,
+                    to,
+                    min: None,
+                    max: None,
+                });
+                let last = self.draft.stops.len() - 1;
+                &mut self.draft.stops[last]
+            }
+        };
+        match at_least {
+            true => stop.min = Some(value),
+            false => stop.max = Some(value),
+        }
+        Ok(())
+    }
+}
