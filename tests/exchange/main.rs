@@ -5,6 +5,8 @@ mod common;
 
 mod answers;
 mod back;
+mod cases;
+mod keys;
 mod motion;
 
 use std::path::PathBuf;

@@ -15,11 +15,11 @@ use biela::mechanism::Mechanism;
 use crate::common::{assembled, parse, straight_to};
 use crate::{import, samples};
 
-type Point = [f64; 2];
+pub(crate) type Point = [f64; 2];
 
 /// Returns the point at distances `a` and `b` \[mm\] of two others, to the left of the way from the
 /// first to the second.
-fn dyad(from: Point, a: f64, to: Point, b: f64) -> Point {
+pub(crate) fn dyad(from: Point, a: f64, to: Point, b: f64) -> Point {
     let way = [to[0] - from[0], to[1] - from[1]];
     let d = way[0].hypot(way[1]);
     let along = (a * a - b * b + d * d) / (2.0 * d);
@@ -31,7 +31,7 @@ fn dyad(from: Point, a: f64, to: Point, b: f64) -> Point {
 }
 
 /// Returns the points of a sample's mechanism \[mm\] with the crank at an angle.
-fn expected(name: &str, crank: f64) -> Vec<(&'static str, Point)> {
+pub(crate) fn expected(name: &str, crank: f64) -> Vec<(&'static str, Point)> {
     let (sin, cos) = crank.sin_cos();
     if name == "slider_crank" {
         let b = [30.0 * cos, 30.0 * sin];
@@ -53,7 +53,7 @@ fn expected(name: &str, crank: f64) -> Vec<(&'static str, Point)> {
 }
 
 /// Returns the place of a marker, on whichever body it is \[mm\].
-fn place(solver: &Solver, mechanism: &Mechanism, name: &str) -> Point {
+pub(crate) fn place(solver: &Solver, mechanism: &Mechanism, name: &str) -> Point {
     let is = |marker: &biela::mechanism::Marker| marker.name == name && marker.body.is_some();
     let index = mechanism.markers.iter().position(is);
     let marker = &mechanism.markers[index.unwrap_or_else(|| panic!("no marker {name}"))];

@@ -54,7 +54,7 @@ impl Import {
             file: name.clone(),
             error,
         };
-        // What stands behind the last point of a link is no extension.
+        // A link has no extension behind its last point.
         let extension = match self.link() {
             Some(_) => String::new(),
             None => extension(&self.file),

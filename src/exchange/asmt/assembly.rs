@@ -29,7 +29,7 @@ pub(super) struct Part {
     pub(super) name: String,
     pub(super) place: Place,
     pub(super) mass: PartMass,
-    /// Of its origin.
+    /// Velocity of its origin.
     pub(super) velocity: Vector,
     pub(super) omega: Vector,
 }

@@ -91,7 +91,7 @@ impl Reader<'_> {
         {
             return Err("it has components out of the plane");
         }
-        let value = |key: &str, side: f64| {
+        let value = |key: &str, side: f64| -> Result<String, &'static str> {
             let text = expression::motion(force.value(key));
             let text = text.ok_or("its expression has no counterpart")?;
             Ok(match text.as_str() {

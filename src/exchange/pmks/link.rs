@@ -21,7 +21,7 @@ pub(super) struct Query {
     pub(super) joints: Vec<Joint>,
     pub(super) links: Vec<Link>,
     pub(super) forces: Vec<Force>,
-    /// What the link says about the picture and about editing, and what is not known.
+    /// Entries on the picture and on editing, and unknown ones.
     pub(super) others: Others,
 }
 
@@ -33,8 +33,7 @@ pub(super) struct Joint {
     pub(super) is_prismatic: bool,
     pub(super) is_input: bool,
     pub(super) is_grounded: bool,
-    /// Of a pin, whether all links on it are one; of a slider, whether it keeps what slides from
-    /// turning.
+    /// Whether all links on a pin are one, or a slider keeps what slides from turning.
     pub(super) is_welded: bool,
     pub(super) shows_curve: bool,
     /// Id of the link in which the slot is, and of the two joints that give its direction.
@@ -130,7 +129,7 @@ impl Query {
         read.others.see("view");
         read.others.see("colours");
         let mut ends = 0;
-        // What is chosen, and marks.
+        // The object that is chosen, then marks.
         let mut tail = 0;
         for part in parts {
             match (ends, part) {

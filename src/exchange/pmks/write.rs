@@ -30,7 +30,7 @@ pub fn pmks_link(pins: &Pins) -> String {
     let rpm = in_rpm(pins.inputs.first().and_then(|input| input.speed));
     // Whole turns per minute, and a mechanism that turns.
     let speed = rpm.abs().round().max(1.0);
-    // Where inputs have speeds of their own, the sign of each is its sense.
+    // The sign of an own speed is its sense.
     let are_alike = |common: f64| {
         pins.inputs
             .iter()

@@ -9,6 +9,7 @@ use crate::exchange::draft::{
 };
 use crate::exchange::error::{self, Error};
 use crate::exchange::note::Note;
+use crate::exchange::others::Others;
 use crate::exchange::sketch::{Bodies, Sketch};
 
 /// Reads a file.
@@ -34,6 +35,8 @@ pub(in crate::exchange) fn read(
     }
     let joints = list(root, "joints")?;
     let links = list(root, "links")?;
+    sort_keys(root, joints, links).note(draft);
+    let ground = root.get("ground").and_then(Value::as_str);
     let mut sketch = Sketch::default();
     let mut by_id = HashMap::new();
     let mut motors = Vec::new();
@@ -67,7 +70,7 @@ pub(in crate::exchange) fn read(
             let id = id.as_str().ok_or_else(|| wrong(&place, "a list of ids"))?;
             points.push(point(id, &place)?);
         }
-        if kind == "ground" {
+        if kind == "ground" || Some(id) == ground {
             for point in points {
                 sketch.anchor(point);
             }
@@ -126,6 +129,51 @@ pub(in crate::exchange) fn read(
         draft.outputs.extend(moving);
     }
     Ok(())
+}
+
+/// Sorts the keys of a file; what the positions give is not taken twice.
+fn sort_keys(root: &Map<String, Value>, joints: &[Value], links: &[Value]) -> Others {
+    const FILE: [&str; 4] = ["name", "ground", "joints", "links"];
+    const JOINT: [&str; 8] = [
+        "id",
+        "type",
+        "name",
+        "position",
+        "axis",
+        "line_point",
+        "ref_joint1_id",
+        "ref_joint2_id",
+    ];
+    const LINK: [&str; 8] = [
+        "id",
+        "type",
+        "name",
+        "joints",
+        "motor_joint",
+        "angular_velocity",
+        "arc_start",
+        "arc_end",
+    ];
+    let mut others = Others::default();
+    for key in root.keys() {
+        others.sort("file", key, &FILE, &[]);
+    }
+    let keys = |list: &[Value]| -> Vec<String> {
+        let objects = list.iter().filter_map(Value::as_object);
+        objects.flat_map(Map::keys).cloned().collect()
+    };
+    for key in keys(joints) {
+        others.sort(
+            "joint",
+            &key,
+            &JOINT,
+            &["slide_distance", "distance", "angle"],
+        );
+    }
+    for key in keys(links) {
+        others.sort("link", &key, &LINK, &["initial_angle"]);
+    }
+    others
 }
 
 /// Refuses files of pylinkage that have no positions, or other classes.
