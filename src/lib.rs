@@ -26,14 +26,16 @@
 //! |---|---|
 //! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and their diagnostics |
 //! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
+//! | [`dynamics`] | the motion of freedoms: forces, contacts, friction, their events |
 //! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
 //! | `page` | a mechanism that is moved by hand, drawn and saved: what a page holds |
+//! | `studio` | a mechanism that is drawn by hand: gestures as changes of its file |
 //! | `exchange` | mechanisms of other programs, read and written |
 //! | `fmi` | FMI 2.0 and 3.0 for any model, and for mechanisms: instance, C interface, model description, archive |
 //! | `cli` | the commands of the program `biela` |
 //!
 //! Each layer uses only layers above it in this table. `drawing`, `page`, `fmi` and `cli` are
-//! features of these names; `cli` includes `exchange`, `png` adds pictures in this format to `drawing`.
+//! features of these names; `page` includes `studio`, `cli` includes `exchange`, `png` adds pictures in this format to `drawing`.
 //!
 //! # Motion
 //!
@@ -74,6 +76,40 @@
 //! assert!((vx - 0.25 * f64::cos(0.2)).abs() < 1e-15);
 //! assert!((ax + 0.25 * f64::sin(0.2)).abs() < 1e-15);
 //! # Ok::<(), biela::kinematics::Error>(())
+//! ```
+//!
+//! # Free motion
+//!
+//! The coordinates that the file calls freedoms move by the forces, J ü + bias = 0, through impacts and
+//! friction that sticks and slides:
+//!
+//! ```
+//! use biela::dynamics::{GivenByPath, Motion};
+//! use biela::kinematics::{Path, Solver};
+//! use biela::mechanism::{Mechanism, Source};
+//!
+//! let file = Source::new("pendulum_free.toml", include_str!("../mechanisms/pendulum_free.toml"));
+//! let (mechanism, _warnings) = Mechanism::parse(&file).expect("the file has no errors");
+//! let path = Path::new(&mechanism);
+//! let mut solver = Solver::new(mechanism.into())?;
+//! solver.assemble(&path)?;
+//!
+//! // Nothing is driven, and no force is an input.
+//! let given = GivenByPath { path: &path, load: |_input, _time| 0.0 };
+//! let mut motion = Motion::new(solver);
+//! motion.prepare_freedoms(Vec::new())?;
+//! motion.release(&given)?;
+//!
+//! // The period of a swing from 120 degrees, by the arithmetic–geometric mean of 1 and cos 60°.
+//! let (mut a, mut b) = (1.0, 0.5_f64);
+//! for _ in 0..6 {
+//!     (a, b) = ((a + b) / 2.0, f64::sqrt(a * b));
+//! }
+//! let (length, gravity) = (0.5, 9.81);
+//! let period = std::f64::consts::TAU / a * f64::sqrt(2.0 * length / (3.0 * gravity));
+//! motion.advance(&path, &given, period).expect("nothing stops it");
+//! assert!((motion.pose().drivers[0] - 120_f64.to_radians()).abs() < 1e-8);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! The package `biela-runtime` makes the shared library inside every FMU from this crate. It exports

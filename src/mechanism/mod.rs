@@ -175,7 +175,7 @@ pub struct Mechanism {
     pub canonical: String,
 }
 
-/// Rigid body with generalized coordinates q = \[x, y, phi\] (seed, 5.4.1).
+/// Rigid body with generalized coordinates q = \[x, y, phi\].
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Name, unique among all named things of the mechanism.

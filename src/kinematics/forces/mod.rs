@@ -1,7 +1,7 @@
 //! Forces: the efforts of the drivers and the reactions of the joints for a known motion.
 //!
 //! With the masses M, the forces Q that act on the bodies and the centrifugal forces Q_v of centres
-//! of mass off the bodies' origins, the equations of motion (seed, 5.5)
+//! of mass off the bodies' origins, the equations of motion
 //!
 //! > M q̈ = Q + Q_v + Phi_qᵀ λ
 //!
