@@ -30,7 +30,6 @@ impl Held {
         let unit = kind.effort_unit().suffix();
         let (size, push) = (shown(self.size), shown(self.size.abs()));
         let joint = load.play().map(|joint| &mechanism.joints[joint]);
-
         match (self.limit, joint.map(Joint::rope)) {
             (Some(limit), _) => format!(
                 "friction `{name}` sticks, {size}{unit} of up to {}{unit}",

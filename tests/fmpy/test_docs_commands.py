@@ -161,7 +161,7 @@ def test_no_reason_without_a_command():
 def test_make_targets_exist(page):
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     # At the start of a line of a block, or in backquotes.
-    for target in re.findall(r"(?:^|`)make ([a-z]+)", page.read_text(encoding="utf-8"), re.M):
+    for target in re.findall(r"(?:^|`)make ([a-z-]+)", page.read_text(encoding="utf-8"), re.M):
         assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
 
 

@@ -12,7 +12,9 @@ mod places;
 mod section;
 mod text;
 
-pub(crate) use number::{NumberInUnit, degrees, estimate, in_unit, largest_coordinate};
+#[cfg(feature = "cli")]
+pub(crate) use number::in_unit;
+pub(crate) use number::{NumberInUnit, degrees, estimate, largest_coordinate};
 pub(crate) use places::WrittenText;
 pub(crate) use section::{in_braces, in_lines, sections};
 pub(crate) use text::TomlText;
