@@ -161,6 +161,11 @@ export type ExportRequest =
   | { do: "export"; name: string; text: string; files?: Files; fmi: string; libraries: Files; page?: string | null }
   // Answers the `content` of the drawing of the pose at the start, and `notes`.
   | { do: "dxf"; name: string; text: string; files?: Files }
+  // Answers the `content` of an assembly for FreeCAD or OndselSolver, of the pose at the start, and
+  // `notes`.
+  | { do: "asmt"; name: string; text: string; files?: Files }
+  // Answers the `content` of a document of Linkage, of the pose at the start, and `notes`.
+  | { do: "linkage2"; name: string; text: string; files?: Files }
   // Answers `svg`: the drawing of the pose at the start.
   | { do: "svg"; name: string; text: string; files?: Files }
   // Answers the `content` of the moving picture.

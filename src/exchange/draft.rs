@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::error::Error;
+use super::freedom::{FreeCoordinate, free_coordinate, undriven};
 use super::note::Note;
 
 /// Unit of the lengths of a file.
@@ -242,8 +243,9 @@ pub(super) struct Force {
 /// Forces as expressions in SI units.
 #[derive(Clone, Debug)]
 pub(super) enum ForceKind {
-    /// Along the distance of two points: positive pushes them apart.
+    /// Along a coordinate: positive pushes two points apart, or turns the second against the first.
     Along {
+        coordinate: Coordinate,
         from: PointRef,
         to: PointRef,
         value: String,
@@ -449,46 +451,46 @@ impl Draft {
             }
         });
         if self.drivers.is_empty() && self.freedoms.is_empty() {
-            self.choose_driver();
+            self.choose_drivers();
         }
         Ok(())
     }
 
-    /// Makes the first pin on ground, or the first slide, a driver.
-    fn choose_driver(&mut self) {
-        let of_kind = |pin: bool| {
-            let mut joints = self.joints.iter();
-            joints.find(|joint| {
-                (joint.from.body == GROUND || joint.to.body == GROUND)
-                    && match joint.kind {
-                        JointKind::Revolute => pin,
-                        JointKind::Translational => !pin,
-                        _ => false,
-                    }
-            })
-        };
-        let Some(joint) = of_kind(true).or_else(|| of_kind(false)) else {
-            return;
-        };
-        let coordinate = match joint.kind {
-            JointKind::Revolute => Coordinate::Angle,
-            _ => Coordinate::X,
-        };
-        let (mut from, mut to) = (joint.from, joint.to);
-        if coordinate == Coordinate::Angle && to.body == GROUND {
-            (from, to) = (to, from);
+    /// Makes coordinates of joints drivers, as many as the mechanism needs; of one that is too large to
+    /// tell, the first pin or slide on ground.
+    fn choose_drivers(&mut self) {
+        let mut free = undriven(self);
+        if free.is_empty() {
+            free.extend(self.first_on_ground());
         }
-        let name = joint.name.clone();
-        let word = coordinate.name();
-        self.drivers.push(Driver {
-            name: format!("{name}_{word}"),
-            coordinate,
-            from,
-            to,
-            source: DriverSource::Input,
-            limits: None,
-        });
-        self.note(Note::DriverChosen { joint: name });
+        for (name, coordinate, from, to) in free {
+            self.note(Note::DriverChosen {
+                driver: name.clone(),
+            });
+            self.drivers.push(Driver {
+                name,
+                coordinate,
+                from,
+                to,
+                source: DriverSource::Input,
+                limits: None,
+            });
+        }
+    }
+
+    /// Returns the coordinate of the first pin on ground, or of the first slide.
+    fn first_on_ground(&self) -> Option<FreeCoordinate> {
+        let on_ground = |joint: &&Joint| joint.from.body == GROUND || joint.to.body == GROUND;
+        let of_kind = |coordinate: Coordinate| {
+            let mut joints = self.joints.iter().filter(on_ground);
+            let joint = joints.find(|joint| match joint.kind {
+                JointKind::Revolute => coordinate == Coordinate::Angle,
+                JointKind::Translational => coordinate == Coordinate::X,
+                _ => false,
+            })?;
+            Some(free_coordinate(joint, coordinate))
+        };
+        of_kind(Coordinate::Angle).or_else(|| of_kind(Coordinate::X))
     }
 }
 

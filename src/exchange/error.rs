@@ -153,6 +153,14 @@ pub enum Error {
         /// Name of the joint or constraint.
         joint: String,
     },
+    /// A mechanism that OndselSolver does not have.
+    #[error(
+        "`{joint}` has no counterpart there: pins, slides, slots, rods, welds, gears and belts on ground, and racks have"
+    )]
+    NoJoint {
+        /// Name of the joint or constraint.
+        joint: String,
+    },
     /// Nothing is joined to anything.
     #[error("it has no two parts that a joint connects")]
     NoJoints,

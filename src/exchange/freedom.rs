@@ -1,6 +1,6 @@
 //! Coordinates that nothing drives, by the rank of the constraints' Jacobian at the drawn pose.
 
-use super::draft::{BodyRef, Coordinate, Draft, GROUND, JointKind, PointRef};
+use super::draft::{BodyRef, Coordinate, Draft, GROUND, Joint, JointKind, PointRef};
 
 /// Most bodies whose freedoms are sought: elimination takes the third power of their number, less than
 /// a second here.
@@ -158,9 +158,22 @@ impl Jacobian<'_> {
     }
 }
 
+/// Name, kind and points of a coordinate that nothing decides.
+pub(super) type FreeCoordinate = (String, Coordinate, PointRef, PointRef);
+
+/// Returns the coordinate of a joint; an angle is measured from ground.
+pub(super) fn free_coordinate(joint: &Joint, coordinate: Coordinate) -> FreeCoordinate {
+    let (mut from, mut to) = (joint.from, joint.to);
+    if coordinate == Coordinate::Angle && to.body == GROUND {
+        (from, to) = (to, from);
+    }
+    let name = format!("{}_{}", joint.name, coordinate.name());
+    (name, coordinate, from, to)
+}
+
 /// Returns the coordinates of joints that nothing decides yet, those on ground first; none of a
 /// mechanism that is too large.
-pub(super) fn undriven(draft: &Draft) -> Vec<(String, Coordinate, PointRef, PointRef)> {
+pub(super) fn undriven(draft: &Draft) -> Vec<FreeCoordinate> {
     if draft.bodies.len() > MOST_BODIES {
         return Vec::new();
     }
@@ -191,13 +204,9 @@ pub(super) fn undriven(draft: &Draft) -> Vec<(String, Coordinate, PointRef, Poin
             _ => &[],
         };
         for &coordinate in coordinates {
-            let (mut from, mut to) = (joint.from, joint.to);
-            if coordinate == Coordinate::Angle && to.body == GROUND {
-                (from, to) = (to, from);
-            }
-            if rows.add(jacobian.coordinate(coordinate, from, to)) {
-                let name = format!("{}_{}", joint.name, coordinate.name());
-                free.push((name, coordinate, from, to));
+            let found = free_coordinate(joint, coordinate);
+            if rows.add(jacobian.coordinate(coordinate, found.2, found.3)) {
+                free.push(found);
             }
         }
     }

@@ -10,7 +10,7 @@
 //! | `pylinkage` | JSON of pylinkage |
 //! | `dxf` | drawings, by a convention on their layers, read and written |
 //! | `names`, `text` | the mechanism file of a draft |
-//! | `pins` | [`Pins`]: a mechanism as links through pins, for links of PMKS+ and JSON of pylinkage |
+//! | `pins` | [`Pins`]: a mechanism as links through pins, for links of PMKS+, documents of Linkage and JSON of pylinkage |
 //! | `ssp` | an FMU as a system of SSP |
 //! | `freedom` | coordinates that nothing drives, for free motion |
 //! | `others` | entries of a source that a reader does not take |
@@ -35,9 +35,11 @@ mod sketch;
 mod ssp;
 mod text;
 
+pub use asmt::AssemblyFile;
 pub use draft::{Draft, LengthUnit};
 pub use dxf::WorkshopDrawing;
 pub use error::Error;
+pub use linkage2::linkage_document;
 pub use note::Note;
 pub use pins::Pins;
 pub use pmks::pmks_link;

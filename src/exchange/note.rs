@@ -5,10 +5,10 @@
 #[non_exhaustive]
 pub enum Note {
     /// A driver that the source does not have.
-    #[error("the source has no motion: the pin or slide `{joint}` is the driver, an input")]
+    #[error("the source has no motion: `{driver}` is a driver, an input")]
     DriverChosen {
-        /// Name of the joint.
-        joint: String,
+        /// Name of the driver.
+        driver: String,
     },
     /// A body without joints.
     #[error("`{name}` is left out: no joint holds it")]
@@ -87,6 +87,14 @@ pub enum Note {
         name: String,
         /// Length in the plane, in the file's unit.
         length: String,
+    },
+    /// An input that another program cannot leave open.
+    #[error(
+        "driver `{name}` is an input: it is held at its start there; --drive gives it a motion"
+    )]
+    Held {
+        /// Name of the driver.
+        name: String,
     },
     /// Units of masses.
     #[error("masses and inertias are taken as {unit}")]

@@ -327,10 +327,16 @@ impl Writer<'_> {
         for (force, name) in draft.forces.iter().zip(&self.given.forces) {
             let origin = origin(name, &force.name);
             let keys = match &force.kind {
-                ForceKind::Along { from, to, value } => {
+                ForceKind::Along {
+                    coordinate,
+                    from,
+                    to,
+                    value,
+                } => {
+                    let kind = coordinate.name();
                     let markers = self.pair(*from, *to);
                     format!(
-                        "coordinate = \"distance\", {markers}, value = {}",
+                        "coordinate = \"{kind}\", {markers}, value = {}",
                         quoted(value)
                     )
                 }

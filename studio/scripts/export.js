@@ -209,6 +209,21 @@ export async function importFile(studio, file) {
   return { name: answer.name, text: answer.text, files: [], notes: answer.notes };
 }
 
+/** Shows in a list what did not come over from a file, or came over changed. */
+export function showNotes(studio, name, notes) {
+  if (!notes.length) {
+    studio.say("");
+    return;
+  }
+  openWindow(studio.root, `Notes on ${name}`, (form) => {
+    const list = add(form, "ul", { className: "notes" });
+    for (const note of notes) {
+      add(list, "li", { textContent: note });
+    }
+    buttonRow(form, ["Close", ""]);
+  });
+}
+
 /** Copies the link, or shows it. */
 export async function shareLink(studio) {
   const file = { ...studio.file, text: studio.fileText };

@@ -5,7 +5,7 @@ import { Background } from "./background.js";
 import { add, say, showPicture } from "./controls.js";
 import { Design } from "./design.js";
 import { Menu, askName, buttonRow, openWindow } from "./dialogs.js";
-import { exportFmu, importFile, saveDrawing, saveFile, saveMade, saveVideo, shareLink, videoKind } from "./export.js";
+import { exportFmu, importFile, saveDrawing, saveFile, saveMade, saveVideo, shareLink, showNotes, videoKind } from "./export.js";
 import { Inspector } from "./inspector.js";
 import { fileOfLink } from "./link.js";
 import { Live } from "./live.js";
@@ -650,6 +650,8 @@ class Studio {
         { label: "Picture (SVG)", act: () => saveDrawing(this, "svg"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Picture (PNG)", act: () => saveDrawing(this, "png"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Drawing for the workshop (DXF)", act: () => saveMade(this, "dxf", "image/vnd.dxf"), why: this.sheet.svg ? "" : "Nothing is drawn" },
+        { label: "Linkage (.linkage2)", act: () => saveMade(this, "linkage2", "application/xml"), why: this.sheet.svg ? "" : "Nothing is drawn" },
+        { label: "FreeCAD, OndselSolver (.asmt)", act: () => saveMade(this, "asmt", "text/plain"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Moving picture (GIF)", act: () => saveMade(this, "gif", "image/gif"), why: this.sheet.svg ? "" : "Nothing is drawn" },
         { label: "Video (MP4 or WebM)", act: () => saveVideo(this), why: this.sheet.svg ? (videoKind() ? "" : "This browser records none") : "Nothing is drawn" },
         { label: "Copy a web link", act: () => shareLink(this) },
@@ -710,7 +712,7 @@ class Studio {
       this.background.open(picture);
       return;
     }
-    const other = files.find((file) => /\.(asmt|linkage2|json|dxf|pmks)$/i.test(file.name));
+    const other = files.find((file) => /\.(asmt|linkage2|json|dxf|pmks|txt)$/i.test(file.name));
     if (other) {
       if (!(await this.mayLeave())) {
         return;
@@ -718,7 +720,7 @@ class Studio {
       const imported = await importFile(this, other);
       if (imported) {
         this.open(imported);
-        this.say(imported.notes.join("; "));
+        showNotes(this, other.name, imported.notes);
       }
       return;
     }

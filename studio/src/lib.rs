@@ -10,7 +10,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use biela::cli::{archive_with, gif};
 use biela::drawing::{Scene, Sheet, svg};
-use biela::exchange::{Format, LengthUnit, WorkshopDrawing};
+use biela::exchange::{AssemblyFile, Format, LengthUnit, Pins, WorkshopDrawing, linkage_document};
 use biela::fmi::{Platform, RuntimeLibrary};
 use biela::kinematics::{Path, Solver};
 use biela::mechanism::{Mechanism, Severity, Source};
@@ -36,6 +36,21 @@ enum Request {
     },
     /// Answers the `content` of the drawing of the pose at the start, and `notes`.
     Dxf {
+        name: String,
+        text: String,
+        #[serde(default)]
+        files: Files,
+    },
+    /// Answers the `content` of an assembly for FreeCAD or OndselSolver, of the pose at the start, and
+    /// `notes`.
+    Asmt {
+        name: String,
+        text: String,
+        #[serde(default)]
+        files: Files,
+    },
+    /// Answers the `content` of a document of Linkage, of the pose at the start, and `notes`.
+    Linkage2 {
         name: String,
         text: String,
         #[serde(default)]
@@ -113,6 +128,16 @@ fn answer(request: Request) -> Result<Value, String> {
             export(&source, &mechanism, &fmi, libraries, page)
         }
         Request::Dxf { name, text, files } => dxf(mechanism(name, text, files)?.1),
+        Request::Asmt { name, text, files } => {
+            let solver = at_start(mechanism(name, text, files)?.1)?;
+            let file = AssemblyFile::new(&solver).map_err(|error| error.to_string())?;
+            Ok(with_notes(&file.text, &file.notes))
+        }
+        Request::Linkage2 { name, text, files } => {
+            let solver = at_start(mechanism(name, text, files)?.1)?;
+            let pins = Pins::new(&solver).map_err(|error| error.to_string())?;
+            Ok(with_notes(linkage_document(&pins), &pins.notes))
+        }
         Request::Svg { name, text, files } => still(&mechanism(name, text, files)?.1),
         Request::Gif { name, text, files } => {
             let (source, mechanism) = mechanism(name, text, files)?;
@@ -165,14 +190,22 @@ fn export(
     Ok(json!({ "content": STANDARD.encode(fmu) }))
 }
 
-fn dxf(mechanism: Arc<Mechanism>) -> Result<Value, String> {
+/// Returns the solver of a mechanism at its start.
+fn at_start(mechanism: Arc<Mechanism>) -> Result<Solver, String> {
     let path = Path::new(&mechanism);
-    let solver = Solver::assembled(mechanism, &path);
-    let mut solver = solver.map_err(|error| error.to_string())?;
+    Solver::assembled(mechanism, &path).map_err(|error| error.to_string())
+}
+
+fn with_notes<N: ToString>(content: impl AsRef<[u8]>, notes: &[N]) -> Value {
+    let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
+    json!({ "content": STANDARD.encode(content), "notes": notes })
+}
+
+fn dxf(mechanism: Arc<Mechanism>) -> Result<Value, String> {
+    let mut solver = at_start(mechanism)?;
     let scene = Scene::new(&mut solver, true);
     let drawing = WorkshopDrawing::new(&scene, &solver);
-    let notes: Vec<String> = drawing.notes.iter().map(ToString::to_string).collect();
-    Ok(json!({ "content": STANDARD.encode(drawing.text), "notes": notes }))
+    Ok(with_notes(drawing.text, &drawing.notes))
 }
 
 fn still(mechanism: &Arc<Mechanism>) -> Result<Value, String> {

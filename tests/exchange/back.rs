@@ -1,9 +1,9 @@
-//! Mechanisms that go out as links of PMKS+ or JSON of pylinkage and come back.
+//! Mechanisms that go out to other programs and come back.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use biela::exchange::{Format, Pins, pmks_link, pylinkage_json};
+use biela::exchange::{AssemblyFile, Format, Pins, linkage_document, pmks_link, pylinkage_json};
 use biela::mechanism::Mechanism;
 
 use crate::common::{assembled, parse, shipped, straight_to};
@@ -11,10 +11,16 @@ use crate::common::{assembled, parse, shipped, straight_to};
 /// Returns a mechanism that went out and came back.
 fn back(mechanism: &Arc<Mechanism>, format: Format) -> Arc<Mechanism> {
     let (solver, _) = assembled(mechanism);
-    let pins = Pins::new(&solver).expect("it is a linkage");
+    let pins = || Pins::new(&solver).expect("it is a linkage");
     let text = match format {
-        Format::Pmks => pmks_link(&pins),
-        _ => pylinkage_json(&pins),
+        Format::Pmks => pmks_link(&pins()),
+        Format::Linkage => linkage_document(&pins()),
+        Format::Asmt => {
+            AssemblyFile::new(&solver)
+                .expect("it has these joints")
+                .text
+        }
+        _ => pylinkage_json(&pins()),
     };
     let draft = format.read(text.as_bytes(), &mechanism.name, None);
     let draft = draft.unwrap_or_else(|error| panic!("{}: {error}", mechanism.name));
@@ -58,7 +64,12 @@ fn linkages_move_alike_after_they_came_back() {
     ] {
         let mechanism = shipped(name);
         let original = motion(&mechanism, points);
-        for (format, resolution) in [(Format::Pmks, 5e-6), (Format::Pylinkage, 1e-12)] {
+        // An assembly keeps an input at its start, as the straight way that is asked for here does.
+        for (format, resolution) in [
+            (Format::Pmks, 5e-6),
+            (Format::Pylinkage, 1e-12),
+            (Format::Linkage, 1e-9),
+        ] {
             let again = motion(&back(&mechanism, format), points);
             for (there, here) in original.iter().flatten().zip(again.iter().flatten()) {
                 let off = (there[0] - here[0]).hypot(there[1] - here[1]);
@@ -95,4 +106,95 @@ fn a_link_is_short_and_its_sense_that_of_the_motion() {
         .read(link.as_bytes(), "it", None)
         .expect("it is a link");
     assert!(draft.write("it").contains("value = \"-30*rpm\""));
+}
+
+/// A body with one pin, and several drivers with speeds of their own, in each format that has these.
+#[test]
+fn levers_and_all_speeds_come_back() {
+    let text = "format = 1\nname = \"two\"\n[ground.markers]\nO = [0, 0]\nQ = [0.3, 0]\n\
+        [bodies.lever]\nmarkers = { O = [0, 0], tip = [0.1, 0] }\nestimate = [0, 0, 0.5]\n\
+        [bodies.crank]\nmarkers = { Q = [0, 0], A = [0.05, 0] }\nestimate = [0.3, 0, 1]\n\
+        [joints]\nO = { type = \"revolute\", markers = [\"ground.O\", \"lever.O\"] }\n\
+        Q = { type = \"revolute\", markers = [\"ground.Q\", \"crank.Q\"] }\n[drivers]\n\
+        first = { coordinate = \"angle\", markers = [\"ground.O\", \"lever.O\"], motion = \"0.5 - 12.5*rpm*t\" }\n\
+        second = { coordinate = \"angle\", markers = [\"ground.Q\", \"crank.Q\"], motion = \"1 + 40*rpm*t\" }\n";
+    for format in [Format::Pmks, Format::Linkage, Format::Asmt] {
+        let again = back(&parse(text), format);
+        assert_eq!(again.bodies.len(), 2, "{format:?}");
+        let (solver, _) = assembled(&again);
+        let speed = |name: &str| {
+            let is = |driver: &biela::mechanism::Driver| {
+                let body = again.markers[driver.coordinate.to.index()].body;
+                body.is_some_and(|body| again.bodies[body.index()].name == name)
+            };
+            let driver = again.drivers.iter().position(is).expect("it is driven");
+            solver
+                .motion(biela::mechanism::DriverId(driver), 0.0)
+                .first()
+                * 30.0
+                / std::f64::consts::PI
+        };
+        // Speeds are written to a thousandth of a turn per minute.
+        assert!(
+            (speed("lever") + 12.5).abs() < 1e-3,
+            "{format:?}: {}",
+            speed("lever")
+        );
+        assert!(
+            (speed("crank") - 40.0).abs() < 1e-3,
+            "{format:?}: {}",
+            speed("crank")
+        );
+    }
+}
+
+/// Mechanisms with slots, slides, gears, belts and racks have their own motion after they came back
+/// from an assembly.
+#[test]
+fn assemblies_keep_motions_over_time() {
+    for (name, driver, rate) in [
+        ("four_bar", "crank_angle", 1.0),
+        ("slider_crank", "crank_angle", 1.0),
+        ("slotted_lever", "crank_angle", 1.0),
+        ("drag_link", "crank_angle", 1.0),
+    ] {
+        let path = crate::common::folder("mechanisms").join(format!("{name}.toml"));
+        let text = std::fs::read_to_string(path).expect("it is shipped");
+        let line = text
+            .lines()
+            .find(|line| line.trim_start().starts_with(driver));
+        let line = line.unwrap_or_else(|| panic!("{name} has no {driver}"));
+        let start = line.find("start = ").expect("it is an input") + 8;
+        let end = start + line[start..].find([',', '}']).expect("it ends");
+        let value = line[start..end].trim().trim_matches('"');
+        let motion = format!("motion = \"{value} + {rate}*t\" ");
+        let driven = line.replace(&line[start - 8..end], &motion);
+        let mechanism = parse(&text.replace(line, &driven));
+        let again = back(&mechanism, Format::Asmt);
+        let [there, here] = [&mechanism, &again].map(|mechanism| {
+            let (mut solver, mut path) = assembled(mechanism);
+            let mut poses = Vec::new();
+            for step in 1..=10 {
+                path.start = solver.pose().time;
+                path.duration = 0.1 * f64::from(step) - path.start;
+                solver
+                    .track(&path)
+                    .unwrap_or_else(|error| panic!("{name}: {error:?}"));
+                for body in &mechanism.bodies {
+                    let index = mechanism
+                        .bodies
+                        .iter()
+                        .position(|other| other.name == body.name);
+                    let q = &solver.pose().q[3 * index.expect("it is one of them")..][..3];
+                    poses.push((body.name.clone(), [q[0], q[1]]));
+                }
+            }
+            poses
+        });
+        // Frames are written with twelve digits of the size, below 1 m.
+        for ((body, a), (_, b)) in there.iter().zip(&here) {
+            let off = (a[0] - b[0]).hypot(a[1] - b[1]);
+            assert!(off < 1e-10, "{name}, {body}: {off} m");
+        }
+    }
 }

@@ -1,11 +1,12 @@
 //! Forces, and the motion that they make: freedoms with their start velocities.
 
 use super::Reader;
-use super::assembly::{ForceTorque, Marker};
+use super::assembly::{ForceTorque, Marker, Part};
 use super::expression;
 use super::joint::DEPTH;
-use super::place::{Place, dot};
+use super::place::{Place, Vector, dot};
 use crate::exchange::draft::{Coordinate, Force, ForceKind, Freedom, GROUND, LengthUnit, PointRef};
+use crate::exchange::error::Error;
 use crate::exchange::freedom::undriven;
 use crate::exchange::note::Note;
 
@@ -49,19 +50,18 @@ impl Reader<'_> {
         let tension = expression::force(force.value("tension"));
         let tension = tension.ok_or("its expression has no counterpart")?;
         Ok(ForceKind::Along {
+            coordinate: Coordinate::Distance,
             from: self.place(i, None),
             to: self.place(j, None),
             value: format!("-({tension})"),
         })
     }
 
-    /// Returns a force and torque of ground on the body of one marker, along the axes of another.
+    /// Returns a force and torque of ground on the body of one marker, along the axes of another; or a
+    /// torque between two bodies.
     fn general(&mut self, force: &ForceTorque) -> Result<ForceKind, &'static str> {
         let [i, j] = force.markers.clone();
         let (on, axes) = (self.body(&i), force.value("MarkerK"));
-        if on == GROUND || self.body(&j) != GROUND {
-            return Err("it is not between ground and a body");
-        }
         let along = match axes {
             "O" => None,
             "J" => Some(&j),
@@ -100,6 +100,15 @@ impl Reader<'_> {
                 _ => text,
             })
         };
+        let has_force = [x, y]
+            .iter()
+            .any(|axis| !expression::is_zero(force.value(forces[*axis])));
+        if on != self.body(&j) && !has_force && axes == "I" && normal == 2 {
+            return self.torsion(&i, &j, side, force.value(torque));
+        }
+        if on == GROUND || self.body(&j) != GROUND {
+            return Err("it is not between ground and a body");
+        }
         let direction = self.plane.angle(directions[x]);
         let (at, turned) = match along {
             Some(marker) if self.body(marker) == on => {
@@ -123,6 +132,26 @@ impl Reader<'_> {
             axes: turned,
             value: [value(forces[x], 1.0)?, value(forces[y], side)?],
             torque: value(torque, side)?,
+        })
+    }
+
+    /// Returns a torque on the first marker's body, and its reaction on the second's.
+    fn torsion(
+        &mut self,
+        i: &Marker,
+        j: &Marker,
+        side: f64,
+        torque: &str,
+    ) -> Result<ForceKind, &'static str> {
+        let torque = expression::force(torque).ok_or("its expression has no counterpart")?;
+        let ends = [self.with_x_axis(i), self.with_x_axis(j)];
+        // The angle of the source is that of the plane, or that from the second marker to the first.
+        let [from, to] = if side > 0.0 { ends } else { [ends[1], ends[0]] };
+        Ok(ForceKind::Along {
+            coordinate: Coordinate::Angle,
+            from,
+            to,
+            value: format!("-({torque})"),
         })
     }
 
@@ -199,7 +228,44 @@ impl Reader<'_> {
     }
 
     /// Notes parts that joints do not keep in the plane: ball joints let them leave it.
-    pub(super) fn note_projected(&mut self) {
+    ///
+    /// # Errors
+    ///
+    /// The joint of a part that leaves the plane by its forces or its start velocities.
+    pub(super) fn projected(&mut self) -> Result<(), Error> {
+        let normal = self.plane.normal;
+        let is_flat = |v: Vector| dot(v, normal).abs() <= DEPTH * dot(v, v).sqrt();
+        let leaves = |part: &Part| {
+            let turns_in_plane =
+                dot(part.omega, part.omega) == 0.0 || self.plane.is_normal(part.omega);
+            let has_axis = part
+                .mass
+                .place
+                .axes
+                .iter()
+                .any(|axis| self.plane.is_normal(*axis));
+            !is_flat(part.velocity)
+                || !turns_in_plane
+                || !is_flat(self.assembly.gravity)
+                || !has_axis
+        };
+        if !self.draft.freedoms.is_empty() {
+            let joints = self.assembly.joints.iter();
+            let mut joints = joints.filter(|joint| {
+                joint.markers.iter().any(|marker| {
+                    let part = marker.part.filter(|part| self.bodies[*part] != GROUND);
+                    part.is_some_and(|index| {
+                        let part = &self.assembly.parts[index];
+                        // Weight beside the ball's depth tilts the part.
+                        let way = [0, 1, 2].map(|k| part.mass.place.at[k] - marker.place.at[k]);
+                        self.may_leave(index) && (leaves(part) || !is_flat(way))
+                    })
+                })
+            });
+            if let Some(joint) = joints.next() {
+                return Err(joint.out_of_plane());
+            }
+        }
         let names: Vec<String> = self
             .assembly
             .parts
@@ -211,6 +277,7 @@ impl Reader<'_> {
         for name in names {
             self.draft.note(Note::Projected { name });
         }
+        Ok(())
     }
 
     fn may_leave(&self, part: usize) -> bool {

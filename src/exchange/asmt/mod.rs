@@ -10,6 +10,7 @@
 //! | `joint` | joints in the plane |
 //! | `motion` | motions and limits of joints |
 //! | `force` | forces, and the motion that they make |
+//! | `write` | assemblies that OndselSolver reads |
 //! | `expression` | motions and forces as expressions of mechanism files |
 
 mod assembly;
@@ -20,6 +21,7 @@ mod keys;
 mod motion;
 mod place;
 mod tree;
+mod write;
 
 use std::collections::{HashMap, HashSet};
 
@@ -29,6 +31,7 @@ use super::note::Note;
 use assembly::{Assembly, Part};
 use place::{Plane, dot};
 use tree::Tree;
+pub use write::AssemblyFile;
 
 /// Length in a file of FreeCAD, which writes millimetres under this name of the assembly.
 const FREECAD: &str = "OndselAssembly";
@@ -81,8 +84,8 @@ pub(super) fn read(text: &str, length: Option<LengthUnit>, draft: &mut Draft) ->
     for force in &assembly.forces {
         reader.force(force);
     }
-    reader.note_projected();
     reader.freedoms();
+    reader.projected()?;
     reader.points();
     reader.draft.simulation = assembly.times;
     entries.note(reader.draft);

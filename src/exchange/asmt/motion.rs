@@ -7,6 +7,9 @@ use crate::exchange::draft::{Coordinate, Driver, DriverSource, LengthUnit, Point
 use crate::exchange::error::Error;
 use crate::exchange::note::Note;
 
+/// Part of a limit's value by which a drawn coordinate may be beyond it: the digits of the source.
+const ON_LIMIT: f64 = 1e-9;
+
 impl Reader<'_> {
     /// Adds a driver for a motion.
     pub(super) fn motion(&mut self, motion: &Motion) -> Result<(), Error> {
@@ -22,6 +25,14 @@ impl Reader<'_> {
             }
             "TranslationalMotion" if self.plane.is_within(z) => (Coordinate::X, 1.0),
             "RotationalMotion" | "TranslationalMotion" => return Err(out_of_plane()),
+            "AllowRotation" => {
+                self.draft.note(Note::LeftOut {
+                    kind: "motion",
+                    name: motion.name.clone(),
+                    reason: "it drives nothing",
+                });
+                return Ok(());
+            }
             class => {
                 return Err(Error::UnknownMotion {
                     motion: motion.name.clone(),
@@ -96,13 +107,20 @@ impl Reader<'_> {
             return Ok(());
         };
         let value = expression::constant(&limit.text);
-        let Some(value) = value else {
+        let Some((value, number)) = value else {
             self.draft.note(note("its value has no counterpart"));
             return Ok(());
         };
         let value = self.scaled(value, coordinate, side);
         let at_least = (limit.kind == "=>") == (side > 0.0);
         let (from, to) = self.measured(i, j, coordinate);
+        let drawn = self.draft.drawn(coordinate, from, to) - side * number;
+        // Sizes of a mechanism are some units, those of angles some radians.
+        let tolerance = ON_LIMIT * number.abs().max(1.0);
+        if (at_least && drawn < -tolerance) || (!at_least && drawn > tolerance) {
+            self.draft.note(note("it is drawn beyond it"));
+            return Ok(());
+        }
         let mut stops = self.draft.stops.iter_mut();
         let same =
             stops.find(|stop| stop.coordinate == coordinate && stop.from == from && stop.to == to);

@@ -7,16 +7,19 @@
 //! | `document` | bodies and pins |
 //! | `drive` | inputs and actuators |
 //! | `way` | sliders, gears and chains |
+//! | `write` | documents from links through pins |
 
 mod document;
 mod drive;
 mod keys;
 mod way;
+mod write;
 mod xml;
 
 use super::draft::{Draft, LengthUnit};
 use super::error::Error;
 use document::Document;
+pub use write::linkage_document;
 
 /// Units of a document per inch, whatever unit it shows.
 const PER_INCH: f64 = 96.0;

@@ -18,7 +18,7 @@ const LONGEST: usize = 4000;
 /// Greatest jump of a function of pieces, relative to its values, that is the rounding of six digits.
 const JUMP: f64 = 1e-5;
 
-/// An expression of time, and of the distance of two markers.
+/// An expression of time, and of the distance of two markers or their angle.
 #[derive(Clone, Debug)]
 enum Term {
     Number(f64),
@@ -42,10 +42,10 @@ pub(super) fn motion(text: &str) -> Option<String> {
     (!term.has(&|term| matches!(term, Distance | Rate))).then(|| term.written())?
 }
 
-/// As [`motion`], for what does not change in time.
-pub(super) fn constant(text: &str) -> Option<String> {
-    let term = parse(text)?;
-    term.is_constant().then(|| term.written())?
+/// As [`motion`], for what does not change in time; with its value.
+pub(super) fn constant(text: &str) -> Option<(String, f64)> {
+    let term = parse(text).filter(Term::is_constant)?;
+    Some((term.written()?, term.value(0.0)))
 }
 
 /// As [`motion`], for a force over the distance of its markers, its rate and time.

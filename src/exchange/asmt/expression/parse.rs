@@ -136,10 +136,14 @@ impl Parser<'_> {
             return None;
         }
         let term = match word {
-            "rIJ" | "vrIJ" => {
-                self.blank()?;
-                (self.word()? == "self").then_some(())?;
-                if word == "rIJ" { Distance } else { Rate }
+            "rIJ" | "angleIJz" => self.own().map(|()| Distance)?,
+            "vrIJ" => self.own().map(|()| Rate)?,
+            "omeIJKi" => {
+                // The component along the third axis of marker I.
+                self.own()?;
+                let is_about_z =
+                    self.takes(',')? && self.takes('I')? && self.takes(',')? && self.takes('3')?;
+                is_about_z.then_some(Rate)?
             }
             "rampstep" => self.ramp()?,
             "integral" => {
@@ -156,11 +160,13 @@ impl Parser<'_> {
     }
 
     fn word(&mut self) -> Option<&'static str> {
-        const WORDS: [&str; 10] = [
+        const WORDS: [&str; 12] = [
             "time",
             "pi",
             "rIJ",
             "vrIJ",
+            "angleIJz",
+            "omeIJKi",
             "self",
             "rampstep",
             "integral",
@@ -178,6 +184,12 @@ impl Parser<'_> {
             .find(|known| *known == word)?;
         self.rest = &self.rest[end..];
         Some(found)
+    }
+
+    /// Passes the word for the markers of the force itself.
+    fn own(&mut self) -> Option<()> {
+        self.blank()?;
+        (self.word()? == "self").then_some(())
     }
 
     /// Passes the first argument of a function over time, and the comma behind it.
