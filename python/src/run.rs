@@ -28,7 +28,7 @@ pub(crate) struct Run {
     /// Cause of a stop before the last row.
     #[pyo3(get)]
     stop: Option<String>,
-    /// What is worth knowing of the motion, as `biela run` tells it.
+    /// Notices of the motion, as `biela run` tells them.
     #[pyo3(get)]
     notices: Vec<String>,
 }

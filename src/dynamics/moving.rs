@@ -43,7 +43,7 @@ pub struct Motion {
     /// Rates and forces at the pose where they were [solved](Self::solve) last; what is given of them
     /// is the host's.
     pub solution: Solution,
-    /// What has been told.
+    /// Memory of the notices that were told.
     pub told: Told,
     /// Whether a free motion ends at events: [`advance`](Self::advance) may then not reach its time.
     pub ends_at_events: bool,

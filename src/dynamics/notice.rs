@@ -1,4 +1,4 @@
-//! What is worth knowing of a motion, in words.
+//! Notices: sentences about a motion, each found and written once.
 
 use std::fmt;
 

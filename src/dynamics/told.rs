@@ -1,8 +1,8 @@
-//! What has been told of a motion.
+//! Memory of the notices that were told.
 
 use crate::kinematics::Solver;
 
-/// What has been told of a motion, so that it is told once.
+/// Memory of the notices that were told of a motion, so that each is told once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Told {
     /// Whether the singular position nearby was told.

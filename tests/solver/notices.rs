@@ -1,4 +1,4 @@
-//! What a mechanism in motion tells: each notice once, whoever moves the mechanism.
+//! Notices of a mechanism in motion: each is told once, whoever moves the mechanism.
 
 use biela::dynamics::{GivenByPath, Motion, Notice};
 use biela::kinematics::{Path, SolverChoices};
