@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use super::error::Error;
-use super::freedom::{FreeCoordinate, free_coordinate, undriven};
 use super::note::Note;
 
 /// Unit of the lengths of a file.
@@ -418,7 +417,7 @@ impl Draft {
             .fold(0.0, |size: f64, x| size.max(x.abs()))
     }
 
-    /// Drops bodies that nothing holds, and gives a mechanism without a driver one.
+    /// Drops bodies that nothing holds.
     pub(super) fn finish(&mut self) -> Result<(), Error> {
         let joined: BTreeSet<BodyRef> = self
             .joints
@@ -450,47 +449,7 @@ impl Draft {
                 !dropped(point.body) && !axes.is_some_and(|axes| dropped(axes.body))
             }
         });
-        if self.drivers.is_empty() && self.freedoms.is_empty() {
-            self.choose_drivers();
-        }
         Ok(())
-    }
-
-    /// Makes coordinates of joints drivers, as many as the mechanism needs; of one that is too large to
-    /// tell, the first pin or slide on ground.
-    fn choose_drivers(&mut self) {
-        let mut free = undriven(self);
-        if free.is_empty() {
-            free.extend(self.first_on_ground());
-        }
-        for (name, coordinate, from, to) in free {
-            self.note(Note::DriverChosen {
-                driver: name.clone(),
-            });
-            self.drivers.push(Driver {
-                name,
-                coordinate,
-                from,
-                to,
-                source: DriverSource::Input,
-                limits: None,
-            });
-        }
-    }
-
-    /// Returns the coordinate of the first pin on ground, or of the first slide.
-    fn first_on_ground(&self) -> Option<FreeCoordinate> {
-        let on_ground = |joint: &&Joint| joint.from.body == GROUND || joint.to.body == GROUND;
-        let of_kind = |coordinate: Coordinate| {
-            let mut joints = self.joints.iter().filter(on_ground);
-            let joint = joints.find(|joint| match joint.kind {
-                JointKind::Revolute => coordinate == Coordinate::Angle,
-                JointKind::Translational => coordinate == Coordinate::X,
-                _ => false,
-            })?;
-            Some(free_coordinate(joint, coordinate))
-        };
-        of_kind(Coordinate::Angle).or_else(|| of_kind(Coordinate::X))
     }
 }
 

@@ -1,6 +1,9 @@
 //! Coordinates that nothing drives, by the rank of the constraints' Jacobian at the drawn pose.
 
-use super::draft::{BodyRef, Coordinate, Draft, GROUND, Joint, JointKind, PointRef};
+use super::draft::{
+    BodyRef, Coordinate, Draft, Driver, DriverSource, GROUND, Joint, JointKind, PointRef,
+};
+use super::note::Note;
 
 /// Most bodies whose freedoms are sought: elimination takes the third power of their number, less than
 /// a second here.
@@ -211,4 +214,44 @@ pub(super) fn undriven(draft: &Draft) -> Vec<FreeCoordinate> {
         }
     }
     free
+}
+
+/// Makes coordinates of joints drivers of a mechanism that has none, as many as it needs; of one that
+/// is too large to tell, the first pin or slide on ground.
+pub(super) fn choose_drivers(draft: &mut Draft) {
+    if !draft.drivers.is_empty() || !draft.freedoms.is_empty() {
+        return;
+    }
+    let mut free = undriven(draft);
+    if free.is_empty() {
+        free.extend(first_on_ground(draft));
+    }
+    for (name, coordinate, from, to) in free {
+        draft.note(Note::DriverChosen {
+            driver: name.clone(),
+        });
+        draft.drivers.push(Driver {
+            name,
+            coordinate,
+            from,
+            to,
+            source: DriverSource::Input,
+            limits: None,
+        });
+    }
+}
+
+/// Returns the coordinate of the first pin on ground, or of the first slide.
+fn first_on_ground(draft: &Draft) -> Option<FreeCoordinate> {
+    let on_ground = |joint: &&Joint| joint.from.body == GROUND || joint.to.body == GROUND;
+    let of_kind = |coordinate: Coordinate| {
+        let mut joints = draft.joints.iter().filter(on_ground);
+        let joint = joints.find(|joint| match joint.kind {
+            JointKind::Revolute => coordinate == Coordinate::Angle,
+            JointKind::Translational => coordinate == Coordinate::X,
+            _ => false,
+        })?;
+        Some(free_coordinate(joint, coordinate))
+    };
+    of_kind(Coordinate::Angle).or_else(|| of_kind(Coordinate::X))
 }

@@ -141,6 +141,7 @@ impl Format {
             Self::Dxf => dxf::read(text, length, &mut draft)?,
         }
         draft.finish()?;
+        freedom::choose_drivers(&mut draft);
         Ok(draft)
     }
 }

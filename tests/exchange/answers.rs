@@ -56,6 +56,15 @@ fn the_content_tells_the_format_too() {
             assert_eq!(found, format, "{}", path.display());
         }
     }
+    // A table of numbers looks like a link; with an extension of its own it is none.
+    assert!(Format::of("", b"0.1,2.3,4.5,6.7").is_ok());
+    for extension in ["csv", "toml", "fmu"] {
+        assert!(
+            Format::of(extension, b"0.1,2.3,4.5,6.7").is_err(),
+            "{extension}"
+        );
+        assert!(Format::of(extension, b"{}").is_err(), "{extension}");
+    }
     for content in ["", "format = 1\nname = \"four_bar\"\n", "<svg/>", "a.b.c.d"] {
         assert!(Format::of("", content.as_bytes()).is_err(), "{content}");
     }
