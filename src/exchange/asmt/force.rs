@@ -165,7 +165,8 @@ impl Reader<'_> {
         let parts = self.assembly.parts.iter();
         let is_moving = parts
             .clone()
-            .any(|part| part.velocity != [0.0; 3] || part.omega != [0.0; 3]);
+            .flat_map(|part| part.velocity.iter().chain(&part.omega))
+            .any(|rate| *rate != 0.0);
         if free.is_empty() && is_moving {
             self.draft.note(Note::StartVelocities {
                 reason: match has_masses {

@@ -30,11 +30,11 @@ pub fn pmks_link(pins: &Pins) -> String {
     let rpm = in_rpm(pins.inputs.first().and_then(|input| input.speed));
     // Whole turns per minute, and a mechanism that turns.
     let speed = rpm.abs().round().max(1.0);
-    // The sign of an own speed is its sense.
+    // The sign of an own speed is its sense; both are written with the same digits.
+    let is_common = |own: f64, common: f64| (own - common).abs() < 0.5 / PARTS;
     let are_alike = |common: f64| {
-        pins.inputs
-            .iter()
-            .all(|input| in_rpm(input.speed) == common)
+        let mut speeds = pins.inputs.iter().map(|input| in_rpm(input.speed));
+        speeds.all(|own| is_common(own, common))
     };
     let is_clockwise = rpm < 0.0 && are_alike(-speed);
     let common = if is_clockwise { -speed } else { speed };
@@ -55,7 +55,7 @@ pub fn pmks_link(pins: &Pins) -> String {
         // A speed that is not the common one stands in the ninth field.
         let own = input
             .map(|input| in_rpm(input.speed))
-            .filter(|own| *own != common);
+            .filter(|own| !is_common(*own, common));
         let own = own.map_or(String::new(), |own| format!(",,,,{}", decimal(own)));
         let mut flags = if pin.is_ground { GROUNDED } else { 0 };
         flags += if is_input { INPUT } else { 0 };

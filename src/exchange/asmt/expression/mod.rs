@@ -238,8 +238,8 @@ impl Term {
             let start = ends[index];
             let (before, value) = (pieces[index].value(start), piece.value(start));
             let size = before.abs().max(value.abs()).max(1.0);
-            // A comparison with a value that is none fails too.
-            if !((value - before).abs() <= JUMP * size) {
+            let jump = (value - before).abs();
+            if jump.is_nan() || jump > JUMP * size {
                 return None;
             }
             if piece.is_constant() {
