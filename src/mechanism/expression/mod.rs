@@ -12,6 +12,7 @@ mod dimension;
 mod error;
 mod function;
 mod in_force;
+#[cfg(feature = "cli")]
 mod infix;
 mod linear;
 mod parse;
