@@ -28,7 +28,7 @@ pub(crate) struct Run {
     /// Cause of a stop before the last row.
     #[pyo3(get)]
     stop: Option<String>,
-    /// Notices of the motion, as `biela run` tells them.
+    /// Warnings about samples in whole angles, then the notices of the motion, as `biela run` tells them.
     #[pyo3(get)]
     notices: Vec<String>,
 }

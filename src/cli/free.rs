@@ -42,8 +42,8 @@ impl AtRest {
             let why = dynamics::Error::NoFreedom;
             return Err(Error::Usage(format!("{file}: {why}")));
         }
-        let notices = motion.notices();
-        let overlaps = notices.filter(|notice| matches!(notice, Notice::Overlap(..)));
+        let happenings = motion.happenings();
+        let overlaps = happenings.filter(|notice| matches!(notice, Notice::Overlap(..)));
         overlaps.for_each(|overlap| Message::from(overlap).show());
         motion.take_rates();
         Ok(Self {

@@ -5,6 +5,7 @@ pub(super) const FUNCTIONS: usize = 2;
 
 /// Part of a force that is its rounding: that of the equations of motion, of some bodies and joints.
 pub(super) const FORCE_ROUNDING: f64 = 1024.0 * f64::EPSILON;
+
 /// A function of the motion that is positive while a mode lasts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Function {

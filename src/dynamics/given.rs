@@ -37,8 +37,8 @@ impl<F: Fn(usize, f64) -> f64> Given for GivenByPath<'_, F> {
     }
 }
 
-/// Returns the motion at the part `s` of a time `h` on the cubic with the values and velocities of `from`
-/// and `to` at its ends; `to` for a time that is none.
+/// Returns the motion at the fraction `s` of a time `h` on the cubic that has the values and velocities of
+/// `from` and `to` at its ends. Returns `to` unless `h` is positive.
 #[must_use]
 pub fn on_cubic(from: Jet, to: Jet, h: f64, s: f64) -> Jet {
     if h <= 0.0 {

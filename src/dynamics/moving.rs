@@ -244,6 +244,7 @@ impl Motion {
             free.motion.resume(&self.solver, &free.fresh)?;
             free.motion.restart(&mut self.solver, given, velocity)?;
             free.is_released = true;
+            self.arrive(Way::Told);
         }
         Ok(())
     }
@@ -268,9 +269,11 @@ impl Motion {
             return false;
         };
         let is_other = free.motion.charts.current() != free.fresh.coordinates;
-        let selected = (free.motion).select(&mut self.solver, &mut self.solution, &free.fresh);
-        debug_assert!(selected.is_ok(), "the file's own coordinates");
-        free.is_released &= !is_other;
+        if is_other {
+            let selected = (free.motion).select(&mut self.solver, &mut self.solution, &free.fresh);
+            debug_assert!(selected.is_ok(), "the file's own coordinates");
+            free.is_released = false;
+        }
         is_other
     }
 
@@ -299,6 +302,7 @@ impl Motion {
             self.take_own();
             self.hold();
             self.solver.restore(&state.pose);
+            self.arrive(Way::Told);
         }
     }
 
@@ -352,9 +356,9 @@ impl Motion {
         followed
     }
 
-    /// Moves on to a time. Without freedoms that were released the mechanism follows `path`, which ends
-    /// there; otherwise it jumps to the inputs at its time and to the parameters at the end of the path,
-    /// and moves on by the forces with the inputs `given`, to the first event if it
+    /// Moves on to a time. While freedoms are held, the mechanism follows `path`, which ends at that time.
+    /// Once they are released, the mechanism first jumps to the inputs `given` at the present time and to
+    /// the parameters at the end of the path; then the forces move it, up to the first event if it
     /// [ends](Self::ends_at_events) there.
     ///
     /// # Errors

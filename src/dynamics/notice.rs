@@ -45,8 +45,8 @@ impl fmt::Display for Notice<'_> {
 }
 
 impl Motion {
-    /// Returns what is worth knowing and was not told yet, in the order in which it came about. The host
-    /// asks after each [advance](Self::advance) and after each [solution](Self::solve).
+    /// Returns what is worth knowing and was not told yet: overlaps, events, then what holds at the pose.
+    /// The host asks after each [advance](Self::advance) and after each [solution](Self::solve).
     pub fn notices(&mut self) -> impl Iterator<Item = Notice<'_>> {
         let Self {
             solver,

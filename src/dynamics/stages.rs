@@ -109,9 +109,9 @@ impl Stages {
                 let own = [f, f + h * v / 3.0, g - h * w / 3.0, g];
                 lower(&mut bound, &own, values().filter(in_middle), noise)
             }
-            // A force has no known rate: a stage in the middle takes its place. A dip that makes a slow
-            // acceleration, or brings a spring as far as a gap may be closed unseen, is of no account: sums
-            // of large forces leave such noise.
+            // The rate of a force is not known: a stage in the middle takes its place. A dip below zero is
+            // ignored if it is less than the force of a slow acceleration or, for a spring, of the depth to
+            // which a gap may close unseen: sums of large forces have such noise.
             _ => {
                 noise = noise.max(SLOW * before.rounding.max(after.rounding));
                 let by_middle = |(one, _): &(f64, f64), (other, _): &(f64, f64)| {

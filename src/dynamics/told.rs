@@ -16,8 +16,8 @@ pub struct Told {
 }
 
 impl Told {
-    /// Nothing has been told of a solver's mechanism with this number of contacts. Ropes that are off their
-    /// pulleys at its pose are told with the mechanism.
+    /// Makes the memory of a motion that begins at a solver's pose, with this number of contacts. Ropes that
+    /// are off their pulleys there count as told: at the file's own pose they are warnings of the mechanism.
     pub(super) fn new(solver: &Solver, contacts: usize) -> Self {
         let mechanism = solver.mechanism();
         let mut off_pulleys = vec![false; mechanism.pulleys()];

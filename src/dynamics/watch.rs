@@ -23,8 +23,12 @@ const MOST_CUTS: i32 = 80;
 /// Length of a step within which nothing is told apart, in roundings of the time: far below any flight.
 const INSTANT: f64 = 64.0;
 
-/// Length of the step after one over which nothing has changed, in lengths of that.
+/// Ratio of the next step to one over which the function has not changed.
 const LONGER: f64 = 2.0;
+/// Longest step over which places that move may be the same to rounding, as a part of the time: that of
+/// wheels some hundred turns from zero. Doubled or halved, an instant is known to 1e-9 of the time or half of
+/// that where a function is the same over so long a step.
+const STALLED: f64 = 1e-9;
 
 /// The search along a motion.
 #[derive(Debug)]
@@ -122,7 +126,9 @@ impl Watch {
             }
             self.is_event |= before.ends_at(&after);
             if known.is_some() {
-                let is_stalled = after.value.to_bits() == before.value.to_bits();
+                // Over a longer step the function is the same as nothing moves.
+                let is_short = h <= STALLED * start.abs().max(end.abs());
+                let is_stalled = is_short && after.value.to_bits() == before.value.to_bits();
                 self.stall = if is_stalled { h } else { 0.0 };
             }
             let value = |at: &[Passive]| {

@@ -79,7 +79,7 @@ impl Format {
             "dxf" => return Ok(Self::Dxf),
             _ => {}
         }
-        let is_text = matches!(extension, "" | "txt" | "url");
+        let is_text = matches!(extension, "" | "txt" | "url" | "pmks");
         let start = String::from_utf8_lossy(&content[..content.len().min(4096)]);
         let start = start.trim_start_matches('\u{feff}').trim_start();
         if start.starts_with("OndselSolver") || start.starts_with("freeCAD:") {

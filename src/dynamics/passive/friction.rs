@@ -42,7 +42,7 @@ impl Cause for Rubbing {
     fn function(&self, mode: Mode, at: &Passive, side: usize) -> Option<Function> {
         let sign = if side == 0 { 1.0 } else { -1.0 };
         match mode {
-            // It neither turns nor sticks before that which holds its coordinate does so no more.
+            // While other forces hold the coordinate, friction neither turns nor begins to stick.
             Mode::Growing | Mode::Falling if at.is_dependent => None,
             Mode::Growing | Mode::Falling if side == 0 => Some(at.speed(mode.sign())),
             // It rests as others do, until something drives it away.

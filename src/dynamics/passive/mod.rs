@@ -92,11 +92,11 @@ pub struct Passive {
     pub bounds: [f64; 2],
     /// Gap, speed and acceleration that are rounding \[m or rad, and those per second\].
     pub roundings: [f64; 3],
-    /// Force that is rounding: of an elastic stop that of its spring in such a gap, of what is held that
-    /// which makes such an acceleration \[N or N m\].
+    /// Force that is rounding \[N or N m\]. For an elastic stop: the force of its spring at the gap that is
+    /// rounding. For a held coordinate: the force that makes the acceleration that is rounding.
     pub force_rounding: f64,
-    /// Whether others hold the coordinate already, or drivers alone move it: where its own force would hold
-    /// it, that is zero.
+    /// Whether other forces hold the coordinate already, or drivers alone move it. A force that holds such a
+    /// coordinate is zero.
     pub is_dependent: bool,
 }
 
@@ -314,6 +314,7 @@ impl PassiveForces {
             list,
         }
     }
+
     /// Forgets what is touched and what sticks.
     pub(super) fn reset(&mut self) {
         self.modes.fill(Mode::Free);
@@ -404,7 +405,8 @@ impl PassiveForces {
         }
     }
 
-    /// Prepares the forces that hold, for L of J = L Lᵀ, and finds what slides though others hold it.
+    /// Prepares the forces that hold, for L of J = L Lᵀ, and finds the sliding friction whose coordinate
+    /// other forces hold.
     pub(super) fn prepare(
         &mut self,
         freedoms: &[DriverId],
@@ -443,7 +445,7 @@ impl PassiveForces {
         }
     }
 
-    /// Returns whether a coordinate moves only as those that are held, which rest.
+    /// Returns whether a coordinate depends on held coordinates alone, so that it rests with them.
     fn is_held_by_others(&mut self, k: usize, freedoms: &[DriverId], lower: &DMatrix<f64>) -> bool {
         /// Part of a row that is rounding, beside bodies of very different masses.
         const ROUNDING: f64 = 1e-6;

@@ -633,3 +633,23 @@ fn friction_takes_over_from_a_stop_at_one_instant() {
         }
     }
 }
+
+/// A load that is constant for most of a row, and then grows, breaks friction loose where it is as large as
+/// that: the force that held it was the same to the bit before.
+#[test]
+fn a_load_that_begins_late_breaks_friction_loose() {
+    let text = slider(
+        0.0,
+        0.0,
+        0.0,
+        "[friction]\nrub = { of = \"way\", force = 50 }\n[forces]\n\
+         push = { coordinate = \"x\", markers = [\"ground.O\", \"slider.P\"], \
+         value = \"max(0, 400*(t - 0.75))\" }",
+    );
+    for rows in ROWS {
+        let events = played(&mut run(&text), 1.0, rows);
+        let slides = events.iter().filter(|event| event.kind == EventKind::Slides);
+        let times: Vec<f64> = slides.map(|event| event.time).collect();
+        assert!(times.len() == 1 && (times[0] - 0.875).abs() < 1e-9, "{rows} {events:?}");
+    }
+}
