@@ -10,6 +10,11 @@ use crate::mechanism::{
     BodyId, CoordinateKind, Expression, Joint, JointKind, MarkerId, Mechanism, rounded,
 };
 
+/// Instants at which the speed of an input is compared with that of the start.
+const SPEEDS: u32 = 16;
+/// Difference of two speeds that are one \[rad/s\]: their last digit as they are written, and its rounding.
+const UNIFORM: f64 = 2e-9;
+
 /// Links through pins. Lengths are in metres.
 #[derive(Debug, Default)]
 pub struct Pins {
@@ -317,6 +322,14 @@ impl Reader<'_> {
     fn inputs(&mut self) {
         let start = self.solver.pose().time;
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            if driver.is_free() {
+                self.pins.notes.push(Note::LeftOut {
+                    kind: "freedom",
+                    name: driver.name.clone(),
+                    reason: "forces move it",
+                });
+                continue;
+            }
             let coordinate = driver.coordinate;
             let turned = match coordinate.kind {
                 CoordinateKind::Angle if self.body(coordinate.from).is_none() => {
@@ -332,15 +345,26 @@ impl Reader<'_> {
             match turned {
                 Some((pin, link)) if self.pins.inputs.iter().all(|input| input.pin != pin) => {
                     let id = crate::mechanism::DriverId(index);
-                    let speed = driver
-                        .motion()
-                        .map(|_| rounded(self.solver.motion(id, start).first(), 9));
+                    let rate = |time: f64| self.solver.motion(id, time).first();
+                    let speed = driver.motion().map(|_| rounded(rate(start), 9));
                     self.pins.inputs.push(Input { pin, link, speed });
+                    let duration = self.mechanism.simulation.stop - start;
+                    let others = (1..=SPEEDS).map(|k| f64::from(k) / f64::from(SPEEDS));
+                    let mut others = others.map(|part| rounded(rate(start + part * duration), 9));
+                    if speed
+                        .is_some_and(|speed| others.any(|other| (other - speed).abs() > UNIFORM))
+                    {
+                        self.pins.notes.push(Note::LeftOut {
+                            kind: "the course of driver",
+                            name: driver.name.clone(),
+                            reason: "inputs turn at one speed there: it has that of the start",
+                        });
+                    }
                 }
                 _ => self.pins.notes.push(Note::LeftOut {
                     kind: "driver",
                     name: driver.name.clone(),
-                    reason: "links are driven about pins on ground",
+                    reason: "only links about pins on ground are driven there, one for each pin",
                 }),
             }
         }

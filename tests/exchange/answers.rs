@@ -56,6 +56,8 @@ fn the_content_tells_the_format_too() {
             assert_eq!(found, format, "{}", path.display());
         }
     }
+    let link = std::fs::read(&samples("pmks")[0]).expect("it can be read");
+    assert_eq!(Format::of("pmks", &link).ok(), Some(Format::Pmks));
     // A table of numbers looks like a link; with an extension of its own it is none.
     assert!(Format::of("", b"0.1,2.3,4.5,6.7").is_ok());
     for extension in ["csv", "toml", "fmu"] {
@@ -67,5 +69,22 @@ fn the_content_tells_the_format_too() {
     }
     for content in ["", "format = 1\nname = \"four_bar\"\n", "<svg/>", "a.b.c.d"] {
         assert!(Format::of("", content.as_bytes()).is_err(), "{content}");
+    }
+}
+
+/// A limit of another kind, or with another sense, is no limit of an angle or a way: it is refused by its line.
+#[test]
+fn other_limits_are_refused() {
+    let path = format!(
+        "{}/tests/exchange/samples/asmt/dropped.asmt",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).expect("it can be read");
+    assert!(Format::Asmt.read(text.as_bytes(), "dropped", None).is_ok());
+    for (from, to) in [("RotationLimit", "DistanceLimit"), ("=<", "<")] {
+        let changed = text.replacen(from, to, 1);
+        let refused = Format::Asmt.read(changed.as_bytes(), "dropped", None);
+        let message = refused.map(|_| ()).unwrap_err().to_string();
+        assert!(message.contains(&format!("`{to}`")), "{message}");
     }
 }

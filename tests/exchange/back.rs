@@ -198,3 +198,57 @@ fn assemblies_keep_motions_over_time() {
         }
     }
 }
+
+/// What moves by forces is no input, and an input that swings is told to turn at one speed there.
+#[test]
+fn freedoms_and_uneven_motions_are_told() {
+    let lever = |moved: &str| {
+        parse(&format!(
+            r#"
+format = 1
+name = "lever"
+[ground.markers]
+O = [0, 0]
+[bodies.arm]
+mass = 1
+inertia = 0.1
+markers = {{ O = [0, 0], P = [0.3, 0] }}
+[joints]
+O = {{ type = "revolute", markers = ["ground.O", "arm.O"] }}
+{moved}
+"#
+        ))
+    };
+    let angle = r#"coordinate = "angle", markers = ["ground.O", "arm.O"]"#;
+    for (moved, inputs, told) in [
+        (
+            format!("[freedoms]\nswing = {{ {angle}, start = 0.3 }}"),
+            0,
+            "freedom `swing`",
+        ),
+        (
+            format!("[drivers]\nswing = {{ {angle}, motion = \"0.3*sin(t)\" }}"),
+            1,
+            "the course of driver `swing`",
+        ),
+        (
+            format!("[drivers]\nswing = {{ {angle}, motion = \"3*t\" }}"),
+            1,
+            "",
+        ),
+    ] {
+        let (solver, _) = assembled(&lever(&moved));
+        let pins = Pins::new(&solver).expect("it is a linkage");
+        let document = linkage_document(&pins);
+        assert_eq!(
+            document.matches("input=\"true\"").count(),
+            inputs,
+            "{document}"
+        );
+        let notes: Vec<String> = pins.notes.iter().map(ToString::to_string).collect();
+        let has_told = notes.iter().any(|note| note.contains(told));
+        assert!(has_told || told.is_empty(), "{notes:?}");
+        let is_uneven = notes.iter().any(|note| note.contains("the course of"));
+        assert_eq!(is_uneven, told.contains("course"), "{notes:?}");
+    }
+}

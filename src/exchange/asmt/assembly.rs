@@ -95,7 +95,7 @@ pub(super) struct Limit {
 }
 
 /// Keys of the numbers that joints have.
-const NUMBERS: [&str; 8] = [
+const NUMBERS: [&str; 7] = [
     "radiusI",
     "radiusJ",
     "pitchRadius",
@@ -103,7 +103,6 @@ const NUMBERS: [&str; 8] = [
     "theIzJz",
     "distanceIJ",
     "offset",
-    "constant",
 ];
 
 impl Assembly {
@@ -124,7 +123,11 @@ impl Assembly {
             name,
         };
         let path = format!("/{}", assembly.name);
-        assembly.read_markers(root, &path, None, &Place::ORIGIN)?;
+        let place = match root.child("Position3D") {
+            Some(_) => read_place(root, "the assembly")?,
+            None => Place::ORIGIN,
+        };
+        assembly.read_markers(root, &path, None, &place)?;
         for part in root.required("Parts", "the assembly")?.children() {
             assembly.read_part(part, &path)?;
         }
@@ -311,14 +314,25 @@ impl Assembly {
         node: Node,
         joints: &HashMap<String, [Marker; 2]>,
     ) -> Result<Limit, Error> {
-        let turns = node.text() == "RotationLimit";
+        let turns = match node.text() {
+            "RotationLimit" => true,
+            "TranslationLimit" => false,
+            class => {
+                let expected = "`RotationLimit` or `TranslationLimit`";
+                return Err(Error::unexpected(node.line(), class, expected));
+            }
+        };
         let name = node.required_value("Name", "a limit")?.to_owned();
         let place = format!("limit `{name}`");
+        let kind = node.required_value("Type", &place)?;
+        if !matches!(kind, "=>" | "=<") {
+            return Err(Error::unexpected(node.line(), kind, "`=>` or `=<`"));
+        }
         Ok(Limit {
             turns,
             markers: self.of_joint_or_own(node, &place, joints)?,
             text: node.required_value("Limit", &place)?.to_owned(),
-            kind: node.required_value("Type", &place)?.to_owned(),
+            kind: kind.to_owned(),
             name,
         })
     }

@@ -65,6 +65,7 @@ impl Reader<'_> {
                 self.holds_nothing(joint);
             }
             "ParallelAxesJoint" | "PerpendicularJoint" | "AngleJoint" if is_within == [true; 2] => {
+                self.note_other_angle(joint);
                 self.hold(joint);
             }
             "NoRotationJoint" => self.hold(joint),
@@ -82,6 +83,22 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Notes an angle that is not the one drawn.
+    fn note_other_angle(&mut self, joint: &Joint) {
+        /// Difference of two cosines that is none: that of values written with seven digits.
+        const SAME: f64 = 1e-6;
+        let [i, j] = joint.markers.each_ref().map(|marker| marker.place.z());
+        let cosine: f64 = i.iter().zip(&j).map(|(i, j)| i * j).sum();
+        let angle = joint.numbers.first().copied().unwrap_or(0.0);
+        if joint.class == "AngleJoint" && (cosine - angle.cos()).abs() > SAME {
+            self.draft.note(Note::LeftOut {
+                kind: "the angle of joint",
+                name: joint.name.clone(),
+                reason: "the parts are drawn at another one, at which they are held",
+            });
+        }
     }
 
     fn holds_nothing(&mut self, joint: &Joint) {

@@ -373,7 +373,7 @@ impl Writer<'_> {
         let notes = forces.chain(stops).map(|(kind, name)| Note::LeftOut {
             kind,
             name: name.clone(),
-            reason: "it does not change what drivers move",
+            reason: "an assembly has no place for it here",
         });
         self.notes.extend(notes.collect::<Vec<_>>());
     }
@@ -405,10 +405,12 @@ impl Writer<'_> {
             let center = body.center.as_ref();
             let center = center.map(|center| center.each_ref().map(|e| self.value(e)));
             place(out, 4, center.unwrap_or_default(), UNTURNED);
-            // A body without a mass has the placeholders of the other program.
-            let mass = body.mass.as_ref().map_or(1.0, |mass| self.value(mass));
+            // Without any masses all bodies have the placeholders of the other program.
+            let has_masses = mechanism.bodies.iter().any(|body| body.mass.is_some());
+            let none = if has_masses { 0.0 } else { 1.0 };
+            let mass = body.mass.as_ref().map_or(none, |mass| self.value(mass));
             let inertia = body.inertia.as_ref().map(|inertia| self.value(inertia));
-            let inertia = inertia.unwrap_or(if body.mass.is_some() { 0.0 } else { 1.0 });
+            let inertia = inertia.unwrap_or(none);
             entry(out, 4, "Mass", &format!("{mass}"));
             entry(
                 out,

@@ -184,7 +184,15 @@ impl Document<'_> {
         let names = [from, to].map(|wheel| draft.bodies[wheel.body.0].name.clone());
         let kind = match &*kind {
             "chain" => JointKind::Belt(wheels),
-            _ => JointKind::Gear(wheels),
+            "gears" => JointKind::Gear(wheels),
+            _ => {
+                draft.note(Note::LeftOut {
+                    kind: "ratio",
+                    name: kind,
+                    reason: "its type is neither gears nor chain",
+                });
+                return Ok(());
+            }
         };
         draft.join(&format!("{}_{}", names[0], names[1]), kind, from, to);
         Ok(())

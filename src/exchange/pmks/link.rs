@@ -115,7 +115,7 @@ impl Query {
         let mut enums_of = enums.bytes().map(digit);
         let unit = enums_of.next().flatten().ok_or_else(|| broken(enums))?;
         let mut read = Self {
-            unit: LengthUnit::of_pmks(unit),
+            unit: LengthUnit::of_pmks(unit).ok_or_else(|| broken(enums))?,
             force_unit: enums_of.nth(1).flatten().unwrap_or(1),
             rpm: if is_clockwise { -speed } else { speed },
             is_clockwise,

@@ -122,11 +122,18 @@ impl<'a> Reader<'a> {
         let by_id: HashMap<&str, &link::Link> =
             query.links.iter().map(|link| (&*link.id, link)).collect();
         for (id, index) in &added {
-            let mut open = vec![*id];
-            let mut seen = HashSet::new();
+            body_of.insert(*id, bodies.of_link[*index]);
+        }
+        // A part of several links belongs to the first of them.
+        let mut seen = HashSet::new();
+        for link in &query.links {
+            let Some(index) = added.get(&*link.id) else {
+                continue;
+            };
+            let mut open = vec![&*link.id];
             while let Some(id) = open.pop() {
                 if seen.insert(id) {
-                    body_of.insert(id, bodies.of_link[*index]);
+                    body_of.entry(id).or_insert(bodies.of_link[*index]);
                     let parts = by_id.get(id).map_or(&[][..], |link| &link.parts);
                     open.extend(parts.iter().map(|id| &**id));
                 }
@@ -262,11 +269,12 @@ impl<'a> Reader<'a> {
 
 impl LengthUnit {
     /// Returns the unit of an index of PMKS+.
-    fn of_pmks(index: u64) -> Self {
+    fn of_pmks(index: u64) -> Option<Self> {
         match index {
-            0 => Self::Inch,
-            2 => Self::Metre,
-            _ => Self::Centimetre,
+            0 => Some(Self::Inch),
+            1 => Some(Self::Centimetre),
+            2 => Some(Self::Metre),
+            _ => None,
         }
     }
 }

@@ -648,8 +648,13 @@ fn a_load_that_begins_late_breaks_friction_loose() {
     );
     for rows in ROWS {
         let events = played(&mut run(&text), 1.0, rows);
-        let slides = events.iter().filter(|event| event.kind == EventKind::Slides);
+        let slides = events
+            .iter()
+            .filter(|event| event.kind == EventKind::Slides);
         let times: Vec<f64> = slides.map(|event| event.time).collect();
-        assert!(times.len() == 1 && (times[0] - 0.875).abs() < 1e-9, "{rows} {events:?}");
+        assert!(
+            times.len() == 1 && (times[0] - 0.875).abs() < 1e-9,
+            "{rows} {events:?}"
+        );
     }
 }

@@ -17,6 +17,8 @@ const FUNCTIONS: [(&str, &str); 8] = [
 
 /// Deepest brackets, well below what a mechanism file may have.
 const DEEPEST: usize = 32;
+/// Sums and products of an expression: its tree is as deep, and is walked on stacks of a megabyte.
+const MOST_OPERATORS: usize = 500;
 
 pub(super) fn parse(text: &str) -> Option<Term> {
     if text.len() > LONGEST {
@@ -25,6 +27,7 @@ pub(super) fn parse(text: &str) -> Option<Term> {
     let mut parser = Parser {
         rest: text,
         depth: 0,
+        operators: 0,
     };
     let term = parser.sum()?;
     parser.blank()?;
@@ -34,6 +37,8 @@ pub(super) fn parse(text: &str) -> Option<Term> {
 struct Parser<'a> {
     rest: &'a str,
     depth: usize,
+    /// Sums and products so far: each is a level of the tree that others walk.
+    operators: usize,
 }
 
 impl Parser<'_> {
@@ -71,6 +76,10 @@ impl Parser<'_> {
                 (_, true) if self.takes('-')? => '-',
                 _ => break,
             };
+            self.operators += 1;
+            if self.operators > MOST_OPERATORS {
+                return None;
+            }
             sum = binary(sign, sum, self.product()?);
         }
         self.depth -= 1;
@@ -85,6 +94,10 @@ impl Parser<'_> {
                 (_, true) if self.takes('/')? => '/',
                 _ => return Some(product),
             };
+            self.operators += 1;
+            if self.operators > MOST_OPERATORS {
+                return None;
+            }
             product = binary(sign, product, self.signed()?);
         }
     }
@@ -203,7 +216,8 @@ impl Parser<'_> {
         let mut constants = Vec::new();
         loop {
             let term = self.sum()?;
-            constants.push(term.is_constant().then(|| term.value(0.0))?);
+            let value = term.is_constant().then(|| term.value(0.0))?;
+            constants.push(value.is_finite().then_some(value)?);
             if !self.takes(',')? {
                 return Some(constants);
             }
