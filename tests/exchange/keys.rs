@@ -161,6 +161,11 @@ fn keys_of_linkage_are_taken_noted_or_refused() {
         ("connector", "fastenconnector"),
         ("connector", "layer"),
         ("connector", "color"),
+        ("connector", "usercolor"),
+        ("connector", "linesize"),
+        ("connector", "shape"),
+        ("connector", "labels"),
+        ("connector", "angles"),
         ("connector", "unheard_of"),
         ("link", "fastenlink"),
         ("link", "fastenconnector"),
@@ -169,7 +174,12 @@ fn keys_of_linkage_are_taken_noted_or_refused() {
         ("link", "solid"),
         ("link", "locked"),
         ("link", "color"),
+        ("link", "usercolor"),
         ("link", "linesize"),
+        ("link", "shape"),
+        ("link", "labels"),
+        ("link", "angles"),
+        ("link", "measurementline"),
         ("link", "unheard_of"),
     ]
     .into_iter()
@@ -368,6 +378,21 @@ fn keys_of_assemblies_are_taken_noted_or_refused() {
         ),
         swap("Tol", "\t\tGeneralConstraintSets\n", limit),
     ]);
+    for key in [
+        "errorTolPosKine",
+        "errorTolAccKine",
+        "iterMaxPosKine",
+        "iterMaxAccKine",
+        "corAbsTol",
+        "corRelTol",
+    ] {
+        let known = "\t\thmax\n\t\t\t1.0\n";
+        keys.push((
+            key,
+            known.to_owned(),
+            format!("{known}\t\t{key}\n\t\t\t1.0\n"),
+        ));
+    }
     for (class, key, value) in [
         ("RotationalMotion", "RotationZ", "2*time"),
         ("TranslationalMotion", "TranslationZ", "2*time"),
@@ -410,6 +435,17 @@ fn keys_of_assemblies_are_taken_noted_or_refused() {
     let longer = text.replace("distanceIJ\n\t\t\t\t\t0.5", "distanceIJ\n\t\t\t\t\t0.6");
     assert_ne!(answer(Format::Asmt, &text), answer(Format::Asmt, &longer));
     let page = page("FreeCAD and OndselSolver");
+    let sets = "\t\tGeneralConstraintSets\n";
+    let limited = base.replacen(sets, limit, 1);
+    for key in ["Behavior", "Stiffness", "Damping"] {
+        let more = format!("\t\t\t\t{key}\n\t\t\t\t\t1\n{sets}");
+        let changed = limited.replacen(sets, &more, 1);
+        assert_ne!(
+            answer(Format::Asmt, &limited),
+            answer(Format::Asmt, &changed)
+        );
+        assert!(page.contains(&format!("`{key}`")), "{key}");
+    }
     for function in ["spline", "integral", "rampstep", "piecewise", "rIJ", "vrIJ"] {
         assert!(page.contains(&format!("`{function}`")), "{function}");
     }
