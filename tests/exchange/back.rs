@@ -199,7 +199,7 @@ fn assemblies_keep_motions_over_time() {
     }
 }
 
-/// What moves by forces is no input, and an input that swings is told to turn at one speed there.
+/// Pins take no freedom for an input, and tell of a motion that is not uniform.
 #[test]
 fn freedoms_and_uneven_motions_are_told() {
     let lever = |moved: &str| {
