@@ -94,17 +94,6 @@ pub(super) struct Limit {
     pub(super) kind: String,
 }
 
-/// Keys of the numbers that joints have.
-const NUMBERS: [&str; 7] = [
-    "radiusI",
-    "radiusJ",
-    "pitchRadius",
-    "pitch",
-    "theIzJz",
-    "distanceIJ",
-    "offset",
-];
-
 impl Assembly {
     pub(super) fn read(tree: &Tree) -> Result<Self, Error> {
         let root = tree.assembly()?;
@@ -257,7 +246,7 @@ impl Assembly {
             self.marker(node.required_value("MarkerJ", &place)?, &place)?,
         ];
         let mut numbers = Vec::new();
-        for key in NUMBERS {
+        for key in keys::NUMBERS {
             if node.child(key).is_some() {
                 let [number] = node.numbers(key, &place)?;
                 numbers.push(number);

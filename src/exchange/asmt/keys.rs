@@ -47,8 +47,19 @@ const PART: [&str; 3] = ["Name", "PrincipalMassMarker", "RefPoints"];
 /// Entries of a part's mass that are taken.
 const MASS: [&str; 3] = ["Name", "Mass", "MomentOfInertias"];
 
-/// Entries of joints, motions, limits and forces that are taken.
-const ITEMS: [&str; 31] = [
+/// Keys of the numbers that joints have.
+pub(super) const NUMBERS: [&str; 7] = [
+    "radiusI",
+    "radiusJ",
+    "pitchRadius",
+    "pitch",
+    "theIzJz",
+    "distanceIJ",
+    "offset",
+];
+
+/// Entries of joints, motions, limits and forces that are taken, beside the [`NUMBERS`] of joints.
+const ITEMS: [&str; 24] = [
     "Name",
     "MarkerI",
     "MarkerJ",
@@ -73,13 +84,6 @@ const ITEMS: [&str; 31] = [
     "TxOnI",
     "TyOnI",
     "TzOnI",
-    "radiusI",
-    "radiusJ",
-    "pitchRadius",
-    "pitch",
-    "theIzJz",
-    "distanceIJ",
-    "offset",
 ];
 
 /// Sorts the entries of an assembly.
@@ -102,10 +106,11 @@ pub(super) fn sort(assembly: Node, others: &mut Others) {
     }
     let lists = sets.into_iter().flat_map(Node::children);
     let forces = ["ForceTorques", "ForcesTorques"].map(|list| assembly.child(list));
+    let taken = [&ITEMS[..], &NUMBERS].concat();
     for list in lists.chain(forces.into_iter().flatten()) {
         for item in list.children() {
             for node in item.children() {
-                others.sort(item.text(), node.text(), &ITEMS, &["Tol"]);
+                others.sort(item.text(), node.text(), &taken, &["Tol"]);
             }
         }
     }

@@ -392,6 +392,9 @@ impl Writer<'_> {
         line(out, 1, "RefCurves");
         line(out, 1, "RefSurfaces");
         line(out, 1, "Parts");
+        // Without any masses all bodies have the placeholders of the other program.
+        let has_masses = mechanism.bodies.iter().any(|body| body.mass.is_some());
+        let none = if has_masses { 0.0 } else { 1.0 };
         for (index, body) in mechanism.bodies.iter().enumerate() {
             let q = &self.solver.pose().q[3 * index..];
             line(out, 2, "Part");
@@ -405,9 +408,6 @@ impl Writer<'_> {
             let center = body.center.as_ref();
             let center = center.map(|center| center.each_ref().map(|e| self.value(e)));
             place(out, 4, center.unwrap_or_default(), UNTURNED);
-            // Without any masses all bodies have the placeholders of the other program.
-            let has_masses = mechanism.bodies.iter().any(|body| body.mass.is_some());
-            let none = if has_masses { 0.0 } else { 1.0 };
             let mass = body.mass.as_ref().map_or(none, |mass| self.value(mass));
             let inertia = body.inertia.as_ref().map(|inertia| self.value(inertia));
             let inertia = inertia.unwrap_or(none);

@@ -76,10 +76,7 @@ impl Parser<'_> {
                 (_, true) if self.takes('-')? => '-',
                 _ => break,
             };
-            self.operators += 1;
-            if self.operators > MOST_OPERATORS {
-                return None;
-            }
+            self.count()?;
             sum = binary(sign, sum, self.product()?);
         }
         self.depth -= 1;
@@ -94,12 +91,15 @@ impl Parser<'_> {
                 (_, true) if self.takes('/')? => '/',
                 _ => return Some(product),
             };
-            self.operators += 1;
-            if self.operators > MOST_OPERATORS {
-                return None;
-            }
+            self.count()?;
             product = binary(sign, product, self.signed()?);
         }
+    }
+
+    /// Counts a sum or a product; `None` beyond the most.
+    fn count(&mut self) -> Option<()> {
+        self.operators += 1;
+        (self.operators <= MOST_OPERATORS).then_some(())
     }
 
     fn signed(&mut self) -> Option<Term> {
