@@ -1,6 +1,6 @@
 //! Events of a free motion, and how they are called.
 
-use crate::mechanism::{Force, Joint, Mechanism, fixed, shown};
+use crate::mechanism::{Force, Load, Mechanism, fixed, shown};
 
 /// An event of a free motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,27 @@ pub enum EventKind {
     Slides,
 }
 
+/// Kinds of what meets at a contact: each has words of its own.
+pub(super) enum Meeting {
+    /// A coordinate and its stop.
+    Stop,
+    /// The ends of a rope, as it is pulled taut.
+    Rope,
+    /// The two parts of another joint with play.
+    Parts,
+}
+
+impl Meeting {
+    /// Returns what meets where a passive force acts.
+    pub(super) fn of(load: &Load, mechanism: &Mechanism) -> Self {
+        match load.play().map(|joint| &mechanism.joints[joint]) {
+            None => Self::Stop,
+            Some(joint) if joint.rope().is_some() => Self::Rope,
+            Some(_) => Self::Parts,
+        }
+    }
+}
+
 impl Event {
     /// Describes the event, with its time.
     #[must_use]
@@ -38,27 +59,26 @@ impl Event {
         let Force { name, load, .. } = &mechanism.forces[self.force];
         let coordinate = load.coordinate();
         let coordinate = coordinate.expect("events are those of passive forces");
-        let joint = load.play().map(|joint| &mechanism.joints[joint]);
         let speed = |speed| {
             let unit = coordinate.kind.units()[1].suffix();
             format!("{}{unit}", shown(speed))
         };
-        let happens = match (self.kind, joint.map(Joint::rope)) {
-            (EventKind::Impact { speed: before }, None) => {
+        let happens = match (self.kind, Meeting::of(load, mechanism)) {
+            (EventKind::Impact { speed: before }, Meeting::Stop) => {
                 format!("impact at stop `{name}` with {}", speed(before))
             }
-            (EventKind::Rests, None) => format!("rest at stop `{name}`"),
-            (EventKind::Leaves, None) => format!("stop `{name}` is left"),
-            (EventKind::Impact { speed: before }, Some(Some(_))) => {
+            (EventKind::Rests, Meeting::Stop) => format!("rest at stop `{name}`"),
+            (EventKind::Leaves, Meeting::Stop) => format!("stop `{name}` is left"),
+            (EventKind::Impact { speed: before }, Meeting::Rope) => {
                 format!("rope `{name}` pulls taut with {}", speed(before))
             }
-            (EventKind::Rests, Some(Some(_))) => format!("rope `{name}` is taut"),
-            (EventKind::Leaves, Some(Some(_))) => format!("rope `{name}` goes slack"),
-            (EventKind::Impact { speed: before }, Some(None)) => {
+            (EventKind::Rests, Meeting::Rope) => format!("rope `{name}` is taut"),
+            (EventKind::Leaves, Meeting::Rope) => format!("rope `{name}` goes slack"),
+            (EventKind::Impact { speed: before }, Meeting::Parts) => {
                 format!("the parts of joint `{name}` meet with {}", speed(before))
             }
-            (EventKind::Rests, Some(None)) => format!("the parts of joint `{name}` touch"),
-            (EventKind::Leaves, Some(None)) => format!("the parts of joint `{name}` part"),
+            (EventKind::Rests, Meeting::Parts) => format!("the parts of joint `{name}` touch"),
+            (EventKind::Leaves, Meeting::Parts) => format!("the parts of joint `{name}` part"),
             (EventKind::Sticks, _) => format!("friction `{name}` sticks"),
             (EventKind::Slides, _) => format!("friction `{name}` slides"),
         };

@@ -1,7 +1,8 @@
 //! Contacts and friction that hold coordinates, in words.
 
+use super::event::Meeting;
 use super::motion::FreeMotion;
-use crate::mechanism::{Force, Joint, Mechanism, shown};
+use crate::mechanism::{Force, Mechanism, shown};
 
 /// A contact that pushes, or friction that sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,15 +30,14 @@ impl Held {
         let kind = coordinate.expect("it acts along a coordinate").kind;
         let unit = kind.effort_unit().suffix();
         let (size, push) = (shown(self.size), shown(self.size.abs()));
-        let joint = load.play().map(|joint| &mechanism.joints[joint]);
-        match (self.limit, joint.map(Joint::rope)) {
+        match (self.limit, Meeting::of(load, mechanism)) {
             (Some(limit), _) => format!(
                 "friction `{name}` sticks, {size}{unit} of up to {}{unit}",
                 shown(limit)
             ),
-            (None, None) => format!("on stop `{name}`, {push}{unit}"),
-            (None, Some(Some(_))) => format!("rope `{name}` is taut, {push}{unit}"),
-            (None, Some(None)) => format!("the parts of joint `{name}` touch, {push}{unit}"),
+            (None, Meeting::Stop) => format!("on stop `{name}`, {push}{unit}"),
+            (None, Meeting::Rope) => format!("rope `{name}` is taut, {push}{unit}"),
+            (None, Meeting::Parts) => format!("the parts of joint `{name}` touch, {push}{unit}"),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Overlaps of parts, as they are told.
 
+use super::event::Meeting;
 use crate::mechanism::{
-    CoordinateKind, Driver, DriverId, DriverSource, Force, Joint, Mechanism, show_time, shown,
-    shown_apart,
+    CoordinateKind, Driver, DriverId, DriverSource, Force, Mechanism, show_time, shown, shown_apart,
 };
 
 /// Parts that overlapped, and the freedoms that were moved to bring them apart.
@@ -62,11 +62,10 @@ pub(super) fn describe(depths: &[(usize, f64)], mechanism: &Mechanism) -> String
         let coordinate = load.coordinate().expect("stops and joints have one");
         let (factor, unit) = display(coordinate.kind);
         let depth = format!("{} {unit}", shown(depth * factor));
-        let joint = load.play().map(|joint| &mechanism.joints[joint]);
-        match joint.map(Joint::rope) {
-            None => format!("stop `{name}` is passed by {depth}"),
-            Some(Some(_)) => format!("rope `{name}` is too short by {depth}"),
-            Some(None) => format!("the parts of joint `{name}` overlap by {depth}"),
+        match Meeting::of(load, mechanism) {
+            Meeting::Stop => format!("stop `{name}` is passed by {depth}"),
+            Meeting::Rope => format!("rope `{name}` is too short by {depth}"),
+            Meeting::Parts => format!("the parts of joint `{name}` overlap by {depth}"),
         }
     });
     depths.collect::<Vec<_>>().join(", ")

@@ -163,7 +163,9 @@ impl Watch {
     /// Returns whether a step may not be cut any more.
     pub(super) fn is_shortest(&self, [start, end]: [f64; 2]) -> bool {
         let h = end - start;
-        h <= resolution([start, end]) || h <= 1.5 * LONGER * self.stall || self.cuts >= MOST_CUTS
+        // The ends of a step that is to be longer than a stall are rounded, by less than half of one.
+        let is_stalled = h <= 1.5 * LONGER * self.stall;
+        is_stalled || h <= resolution([start, end]) || self.cuts >= MOST_CUTS
     }
 
     /// Counts a step that is cut for a gap.
