@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
 use serde_json::{Value, json};
 
-use super::{open, wrapped};
+use super::{open, parameter, wrapped};
 use crate::dynamics::{FreeMotion, Given};
 use crate::kinematics::{ForceQuantity, Path, Solution, Solver};
 use crate::mechanism::{BodyId, DriverId, Jet, Mechanism, Source};
@@ -443,4 +443,30 @@ fn a_chart_tells_impacts() {
     session.go_to(0.6);
     let chart = session.chart(Over::Time, &[], 10);
     assert_eq!(chart["events"].as_array().map(Vec::len), Some(2));
+}
+
+/// A block that friction holds on a slope, beside an arm on a rod whose length can be set.
+const SLOPE: &str = r#"
+format = 1
+name = "slope"
+parameters.rod_length = { value = 1, unit = "m" }
+ground.markers = { O = [0, 0, "-30*deg"], A = [0, 0], B = [1.5, 0] }
+bodies.block = { markers = { P = [0, 0, "-30*deg"] }, mass = 1 }
+bodies.arm = { markers = { A = [0, 0], B = [1, 0] }, mass = 1, inertia = 1, estimate = [0, 0, "40*deg"] }
+joints.way = { type = "translational", markers = ["ground.O", "block.P"] }
+joints.A = { type = "revolute", markers = ["ground.A", "arm.A"] }
+joints.rod = { type = "link", markers = ["ground.B", "arm.B"], length = "rod_length" }
+freedoms.slip = { coordinate = "x", markers = ["ground.O", "block.P"] }
+friction.rub = { of = "slip", force = 20 }
+"#;
+
+#[test]
+fn friction_still_holds_after_a_refused_parameter() {
+    let mut session = open(SLOPE);
+    play(&mut session, 0.1);
+    let rod = parameter(&session, "rod_length");
+    // The arm's end comes no nearer to B than 0.5 m.
+    assert!(matches!(session.set(rod, 0.1, false), Outcome::Refused(_)));
+    play(&mut session, 0.5);
+    assert!(variable(&session, "slip.position").abs() < 1e-12);
 }
