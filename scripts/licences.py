@@ -23,26 +23,26 @@ RUNTIME_TARGETS = (
 )
 # Each file with its package, the targets of that, and the words about what holds it.
 NOTICES = {
-    ROOT / "runtime" / "licenses.txt": (
+    ROOT / "crates" / "runtime" / "licenses.txt": (
         "biela-runtime",
         RUNTIME_TARGETS,
         "The library in binaries/ is biela",
         "resources/",
     ),
-    ROOT / "page" / "licenses.txt": (
+    ROOT / "crates" / "page" / "licenses.txt": (
         "biela-page",
         ("wasm32-unknown-unknown",),
         "The solver in this page is biela",
         "this page",
     ),
-    ROOT / "studio" / "licenses.txt": (
+    ROOT / "crates" / "studio" / "licenses.txt": (
         "biela-studio",
         ("wasm32-unknown-unknown",),
         "The solver in this page is biela",
         "this page",
     ),
     # The module holds the program, too.
-    ROOT / "python" / "licenses.txt": (
+    ROOT / "crates" / "python" / "licenses.txt": (
         "biela-python",
         RUNTIME_TARGETS,
         "This is biela, the program and the Python module",

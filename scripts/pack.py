@@ -57,7 +57,7 @@ def content(program: Path) -> dict[str, Path]:
     # Of what is inside program, libraries and solvers.
     inside = {"program": "python", "runtime": "runtime", "page": "page", "studio": "studio", "editor": "studio/editor"}
     for name, folder in inside.items():
-        files[f"share/biela/licenses/{name}.txt"] = ROOT / folder / "licenses.txt"
+        files[f"share/biela/licenses/{name}.txt"] = ROOT / "crates" / folder / "licenses.txt"
     return dict(sorted((name.replace(os.sep, "/"), path) for name, path in files.items()))
 
 

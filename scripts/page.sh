@@ -20,8 +20,8 @@ OUT=$PWD/target/runtimes
 name=${1:-page}
 # Usual size, packed, at most [bytes]: each page and each FMU holds the solver of pages.
 case $name in
-page) usual_size=1200000 made_of='page' ;;
-studio) usual_size=1900000 made_of='page studio' ;;
+page) usual_size=1200000 made_of='crates/tools/src crates/tools/Cargo.toml crates/page' ;;
+studio) usual_size=1900000 made_of='crates/tools/src crates/tools/Cargo.toml crates/page crates/studio' ;;
 *) fail "no solver is called \`$name\`" "It is page or studio." ;;
 esac
 

@@ -25,7 +25,7 @@ library() { # TARGET FILE
 }
 
 # Prints a digest of all that a library is built from.
-sources() { digest_of src runtime scripts/cross.sh Cargo.toml Cargo.lock; }
+sources() { digest_of src crates/runtime scripts/cross.sh Cargo.toml Cargo.lock; }
 
 current() {
     local now folder

@@ -94,7 +94,7 @@ test_cargo() {
     (
         cd "$WORK/biela"
         env -i HOME="$HOME" PATH="$(dirname "$(command -v cargo)"):/usr/bin:/bin" \
-            cargo install --quiet --locked --path . --root "$WORK/cargo"
+            cargo install --quiet --locked --path crates/tools --root "$WORK/cargo"
     )
     use "$WORK/cargo/bin"
     say "cargo: the program works"

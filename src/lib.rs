@@ -27,15 +27,10 @@
 //! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and their diagnostics |
 //! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
 //! | [`dynamics`] | the motion of freedoms: forces, contacts, friction, their events |
-//! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
-//! | `page` | a mechanism that is moved by hand, drawn and saved: what a page holds |
-//! | `studio` | a mechanism that is drawn by hand: gestures as changes of its file |
-//! | `exchange` | mechanisms of other programs, read and written |
-//! | `fmi` | FMI 2.0 and 3.0 for any model, and for mechanisms: instance, C interface, model description, archive |
-//! | `cli` | the commands of the program `biela` |
+//! | [`fmi`] | FMI 2.0 and 3.0 for any model, and for mechanisms: instance, C interface, model description, archive |
 //!
-//! Each layer uses only layers above it in this table. `drawing`, `page`, `fmi` and `cli` are
-//! features of these names; `page` includes `studio`, `cli` includes `exchange`, `png` adds pictures in this format to `drawing`.
+//! Each layer uses only layers above it in this table. The program `biela`, pictures, pages and
+//! mechanisms of other programs are the package `biela-tools`.
 //!
 //! # Motion
 //!
@@ -116,19 +111,9 @@
 //! the functions of `fmi2Functions.h` and `fmi3Functions.h`, and reads the mechanism from the FMU's
 //! resources.
 
-#[cfg(feature = "cli")]
-pub mod cli;
-#[cfg(feature = "drawing")]
-pub mod drawing;
 pub mod dynamics;
-#[cfg(feature = "cli")]
-pub mod exchange;
 #[cfg(feature = "fmi")]
 pub mod fmi;
 pub mod kinematics;
 pub mod mechanism;
-#[cfg(feature = "page")]
-pub mod page;
-#[cfg(feature = "page")]
-pub mod studio;
 pub mod unit;

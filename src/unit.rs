@@ -60,8 +60,7 @@ impl Dimension {
     }
 
     /// Returns the base units that it has, with their exponents.
-    #[cfg(feature = "fmi")]
-    pub(crate) fn base_units(self) -> impl Iterator<Item = (&'static str, i8)> {
+    pub fn base_units(self) -> impl Iterator<Item = (&'static str, i8)> {
         let all = ["kg", "m", "s", "rad"].into_iter().zip(self.exponents());
         all.filter(|(_, exponent)| *exponent != 0)
     }

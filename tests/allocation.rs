@@ -7,7 +7,7 @@
 
 mod common;
 #[path = "common/generated.rs"]
-#[allow(dead_code, reason = "also used by `benches/`")]
+#[allow(dead_code, reason = "also used by `crates/benches`")]
 mod generated;
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -16,7 +16,7 @@ include_patterns = [
     "README.md",
     "CHANGELOG.md",
     "docs/*.md",
-    *(f"{folder}/README.md" for folder in ("mechanisms", "examples", "benches", "tests")),
+    *(f"{folder}/README.md" for folder in ("mechanisms", "examples", "crates/benches", "tests")),
 ]
 exclude_patterns = [".*", "target"]
 # The anchors of headings down to this level, made as where the files are read on the web.

@@ -337,11 +337,7 @@ fn range(min: Option<f64>, max: Option<f64>) -> String {
 }
 
 /// Checks a value of a Real with these limits.
-pub(crate) fn check_limits(
-    name: &str,
-    value: f64,
-    [min, max]: [Option<f64>; 2],
-) -> Result<(), Error> {
+pub fn check_limits(name: &str, value: f64, [min, max]: [Option<f64>; 2]) -> Result<(), Error> {
     check_finite(name, value)?;
     if min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max) {
         return Err(Error::Range {

@@ -32,7 +32,7 @@ mod uri;
 mod variable;
 
 pub use codec::{Codec, Unreadable};
-pub use error::{Error, Failure, StateError};
+pub use error::{Error, Failure, StateError, check_limits};
 pub use instance::{
     CoSimulation, CompletedStep, EventResult, FmuState, Instance, Reals, StepOutcome, StepProgress,
 };

@@ -392,7 +392,7 @@ impl fmt::Display for OpenJoint {
 
 impl OpenJoint {
     /// Returns the gap and the error of the angle, as far as it has one, in words.
-    pub(crate) fn measured(&self) -> String {
+    pub fn measured(&self) -> String {
         match (self.gap > 0.0, self.angle > 0.0) {
             (true, true) => format!("{} and {}", millimetres(self.gap), degrees(self.angle)),
             (false, true) => degrees(self.angle),

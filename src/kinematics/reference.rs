@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 #[path = "../../tests/common/generated.rs"]
-#[allow(dead_code, reason = "also used by `benches/`")]
+#[allow(dead_code, reason = "also used by `crates/benches`")]
 pub(super) mod generated;
 
 use super::constraint::Gradient;

@@ -26,7 +26,7 @@ impl Coordinate {
 
     /// Returns its value \[m or rad\] where the markers are at these places: x, y \[m\] and angle
     /// \[rad\] in the global frame.
-    pub(crate) fn between(&self, place: impl Fn(MarkerId) -> [f64; 3]) -> f64 {
+    pub fn between(&self, place: impl Fn(MarkerId) -> [f64; 3]) -> f64 {
         let [from, to, axes] = [self.from, self.to, self.axes].map(place);
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
         let (sin, cos) = axes[2].sin_cos();

@@ -43,7 +43,7 @@ pub enum CurveShape {
 
 impl CurveShape {
     /// Returns x and y \[m\] at a place, from 0 to 1 along the curve, with three derivatives by it.
-    pub(crate) fn at(&self, parameter: &impl Fn(ParameterId) -> f64, place: f64) -> [Jet3; 2] {
+    pub fn at(&self, parameter: &impl Fn(ParameterId) -> f64, place: f64) -> [Jet3; 2] {
         match self {
             Self::Points(path) => path.at(place),
             Self::Formula { x, y, ends } => Self::along([x, y], ends, parameter, place),

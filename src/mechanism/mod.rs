@@ -5,7 +5,6 @@
 //! | `source`, `encoding` | [`Source`]: the text, its lines and columns |
 //! | `syntax` | TOML document in which each key and value knows its place |
 //! | `read` | from the document to the [`Mechanism`], or to all its problems |
-//! | `write` | the text of a file: numbers, sections, changes in place |
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
 //! | `joint` | [`Joint`]: its kinds, and what it is asked whatever its kind |
@@ -62,8 +61,6 @@ mod table;
 mod toml_error;
 mod unit_slip;
 mod wording;
-#[cfg(feature = "page")]
-pub(crate) mod write;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use coordinate::{Coordinate, CoordinateKind};
@@ -72,12 +69,10 @@ pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use excursion::Excursion;
-#[cfg(feature = "cli")]
-pub(crate) use expression::is_taken;
-pub use expression::{Expression, ExpressionError, LinearForm, Variable};
+pub use expression::{
+    Expression, ExpressionError, LinearForm, Variable, constant, is_taken, names_in,
+};
 pub(crate) use expression::{Values, joins};
-#[cfg(feature = "page")]
-pub(crate) use expression::{constant, names_in};
 pub use force::{
     ElasticStop, Force, ForceComponent, ForceLaw, Load, PassiveCause, RegularisedFriction, Spring,
 };
@@ -85,12 +80,8 @@ pub use force_quantity::ForceQuantity;
 pub use friction::{Bearing, BearingShape, FrictionLaw};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};
-#[cfg(feature = "cli")]
-pub(crate) use motion::not_finite;
-pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
-#[cfg(feature = "cli")]
-pub(crate) use names::{did_you_mean, help};
-pub use names::{is_identifier, similar_identifier};
+pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable, not_finite};
+pub use names::{did_you_mean, help, is_identifier, similar_identifier};
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::{DerivedParameter, Parameter};
 pub use play::Play;
@@ -101,27 +92,18 @@ pub use reaction::{NamedForce, Reported};
 pub(crate) use rope::MOST_BODIES;
 pub use rope::{Pulley, PulleySide, Rope, RopePoint};
 pub use setting::{Extrapolation, RateSource};
-pub(crate) use signal::{COMPONENTS, SUFFIXES};
-pub use signal::{Order, Signal};
+pub(crate) use signal::SUFFIXES;
+pub use signal::{COMPONENTS, Order, Signal};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 pub use stop::{Stop, StopContact};
-#[cfg(feature = "cli")]
-pub(crate) use synonym::in_our_words;
-#[cfg(feature = "cli")]
-pub(crate) use table::{Separated, comma_hint};
-pub use table::{Table, TableFile};
-pub use unit_slip::whole_angles;
-#[cfg(feature = "cli")]
-pub(crate) use unit_slip::{is_plain, large_angle, large_angles, large_length, large_velocity};
-#[cfg(feature = "cli")]
-pub(crate) use wording::quoted;
-#[cfg(any(feature = "drawing", feature = "fmi"))]
-pub(crate) use wording::rounded;
-#[cfg(feature = "page")]
-pub(crate) use wording::shortest;
-pub use wording::show_time;
-pub(crate) use wording::{fixed, fixed_apart, shown, shown_apart};
+pub use synonym::in_our_words;
+pub use table::{Separated, Table, TableFile, comma_hint};
+pub use unit_slip::{
+    is_plain, large_angle, large_angles, large_length, large_velocity, whole_angles,
+};
+pub use wording::{fixed, quoted, rounded, shortest, show_time, shown};
+pub(crate) use wording::{fixed_apart, shown_apart};
 
 /// Planar mechanism as its file describes it. Names, types and units are checked, assembly is not.
 ///

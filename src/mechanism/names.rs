@@ -143,12 +143,12 @@ impl<'a, T: Copy> FromIterator<(&'a str, T)> for NameTable<'a, T> {
 
 /// Returns help for a wrong name: the nearest of `candidates` and `further`, otherwise the
 /// candidates if they are few.
-pub(crate) fn help(name: &str, candidates: &[&str], further: &[&str]) -> Option<String> {
+pub fn help(name: &str, candidates: &[&str], further: &[&str]) -> Option<String> {
     did_you_mean(name, &[candidates, further].concat()).or_else(|| list(candidates))
 }
 
 /// Returns "did you mean `crank`?" if that is near.
-pub(crate) fn did_you_mean(name: &str, candidates: &[&str]) -> Option<String> {
+pub fn did_you_mean(name: &str, candidates: &[&str]) -> Option<String> {
     nearest(name, candidates).map(|near| format!("did you mean {}?", quoted(near)))
 }
 

@@ -27,10 +27,9 @@ pub struct RopePoint {
     pub pulley: Option<Pulley>,
 }
 
-#[cfg(feature = "drawing")]
 impl RopePoint {
     /// Returns the radius of the pulley \[m\], positive on the left of the rope; zero without one.
-    pub(crate) fn radius(&self, parameter: &impl Fn(super::ParameterId) -> f64) -> f64 {
+    pub fn radius(&self, parameter: &impl Fn(super::ParameterId) -> f64) -> f64 {
         let pulley = self.pulley.as_ref();
         pulley.map_or(0.0, |pulley| {
             pulley.side.sign() * pulley.radius.evaluate(parameter, 0.0)

@@ -54,7 +54,7 @@ pub(crate) const SUFFIXES: [&str; 3] = ["position", "velocity", "acceleration"];
 
 /// Last parts of the names of a body's variables: of x, y and phi, each by order. Those of a marker
 /// are the first two.
-pub(crate) const COMPONENTS: [[&str; 3]; 3] = [
+pub const COMPONENTS: [[&str; 3]; 3] = [
     ["x", "vx", "ax"],
     ["y", "vy", "ay"],
     ["phi", "omega", "alpha"],

@@ -43,7 +43,7 @@ const WORDS: [(&[&str], &[&str]); 6] = [
 
 /// Returns "did you mean `crank.omega`?" for a variable whose quantity is in another word, of an
 /// owner that is known or near to one.
-pub(crate) fn in_our_words(name: &str, known: &[&str]) -> Option<String> {
+pub fn in_our_words(name: &str, known: &[&str]) -> Option<String> {
     let (owner, word) = name.rsplit_once('.')?;
     let (_, parts) = WORDS.iter().find(|(words, _)| {
         let mut words = words.iter();

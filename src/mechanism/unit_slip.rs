@@ -16,14 +16,14 @@ const RIGHT_ANGLE: f64 = 90.0;
 const ROUND: f64 = 50.0;
 
 /// Says that an angle \[rad\] of more than a turn looks like degrees; `None` for any other.
-pub(crate) fn large_angle(angle: f64) -> Option<String> {
+pub fn large_angle(angle: f64) -> Option<String> {
     let (number, degrees) = (shown(angle), angle.to_degrees());
     (angle.abs() > TAU).then(|| format!("an angle of {number} rad is {degrees:.1} deg"))
 }
 
 /// Says that samples of an angle \[rad\] look like degrees: more than a turn at the start, or
 /// [whole angles](whole_angles). `None` for any others.
-pub(crate) fn large_angles(samples: &[f64]) -> Option<String> {
+pub fn large_angles(samples: &[f64]) -> Option<String> {
     whole_angles(samples).or_else(|| large_angle(*samples.first()?))
 }
 
@@ -39,7 +39,7 @@ pub fn whole_angles(samples: &[f64]) -> Option<String> {
 }
 
 /// Says that a velocity \[rad/s\] of whole right angles looks like degrees; `None` for any other.
-pub(crate) fn large_velocity(velocity: f64) -> Option<String> {
+pub fn large_velocity(velocity: f64) -> Option<String> {
     let is_suspect = velocity != 0.0 && velocity % RIGHT_ANGLE == 0.0 && velocity % ROUND != 0.0;
     let (number, degrees) = (shown(velocity), velocity.to_degrees());
     is_suspect.then(|| format!("a velocity of {number} rad/s is {degrees:.1} deg/s"))
@@ -47,8 +47,7 @@ pub(crate) fn large_velocity(velocity: f64) -> Option<String> {
 
 /// Says that a length \[m\] looks like millimetres, or like the unit that shows it, beside the one
 /// that it replaces; `None` for any other. The second text is that unit.
-#[cfg(feature = "cli")]
-pub(crate) fn large_length(
+pub fn large_length(
     length: f64,
     usual: f64,
     display: Option<DisplayUnit>,
@@ -77,7 +76,7 @@ pub(super) fn large_in(length: f64, display: DisplayUnit) -> Option<(String, &'s
 
 /// Returns whether an expression is made of plain numbers, and perhaps of `t`: the author of any
 /// other has thought of the unit.
-pub(crate) fn is_plain(text: &str) -> bool {
+pub fn is_plain(text: &str) -> bool {
     let mut words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "_.".contains(c)));
     words.all(|word| {
         let is_number = word.starts_with(|c: char| c.is_ascii_digit() || c == '.');
@@ -134,7 +133,6 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "cli")]
     #[test]
     fn millimetres_are_suspected_and_metres_are_not() {
         let millimetre = Some(DisplayUnit::MILLIMETRE);

@@ -22,7 +22,7 @@ pub(super) fn either(candidates: &[&str]) -> String {
 }
 
 /// Returns a number with six digits at most.
-pub(crate) fn shown(number: f64) -> String {
+pub fn shown(number: f64) -> String {
     shown_with(number, DIGITS)
 }
 
@@ -39,7 +39,7 @@ pub fn show_time(time: f64) -> String {
 
 /// Returns a number with this many decimals. Zero has no sign; a number of more than nine digits
 /// before the point has a power of ten.
-pub(crate) fn fixed(number: f64, decimals: usize) -> String {
+pub fn fixed(number: f64, decimals: usize) -> String {
     if number.abs() >= 1e9 {
         return format!("{number:.decimals$e}");
     }
@@ -51,8 +51,7 @@ pub(crate) fn fixed(number: f64, decimals: usize) -> String {
 }
 
 /// Returns a number with at most this many decimals, without zeros at its end.
-#[cfg(feature = "page")]
-pub(crate) fn shortest(number: f64, decimals: usize) -> String {
+pub fn shortest(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
     let text = match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.'),
@@ -82,7 +81,7 @@ pub(crate) fn shown_apart(a: f64, b: f64) -> [String; 2] {
 }
 
 /// Returns a number rounded to significant digits.
-pub(crate) fn rounded(number: f64, digits: usize) -> f64 {
+pub fn rounded(number: f64, digits: usize) -> f64 {
     let text = format!("{number:.*e}", digits - 1);
     text.parse().unwrap_or(number)
 }
@@ -97,7 +96,7 @@ fn shown_with(number: f64, digits: usize) -> String {
 }
 
 /// Returns a piece of the file in back quotes, on one line, cut where it is very long.
-pub(crate) fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     let mut shown: String = text
         .chars()
         .take(MAX_QUOTED_LENGTH)

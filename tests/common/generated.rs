@@ -1,4 +1,4 @@
-//! Texts of mechanisms of any size with known motions; also used by `benches/`.
+//! Texts of mechanisms of any size with known motions; also used by `crates/benches`.
 
 use std::f64::consts::{FRAC_PI_3, PI};
 use std::fmt::Write as _;
@@ -26,7 +26,7 @@ pub const SPACING: f64 = 0.25;
 ///
 /// Bodies: `crank`, then `coupler_k` and `rocker_k` for k = 1 to `loops`; the origin of each is at
 /// the pin or pivot that comes first in this order. The driver is `crank_angle`, which starts at
-/// 60°. `benches/yardstick/chain.h` has the same geometry.
+/// 60°. `crates/benches/yardstick/chain.h` has the same geometry.
 pub fn chain(loops: usize, ground: Ground) -> String {
     let (crank, coupler, rocker, base) = (0.10, 0.25, 0.30, 0.40);
     // Estimates: the closed pose at 60°, to a millimetre and a milliradian.

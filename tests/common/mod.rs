@@ -5,7 +5,7 @@
 pub(crate) mod exact;
 pub(crate) mod log;
 
-use std::path::{Path as FilePath, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Quantity, Sink, Status};
@@ -39,7 +39,12 @@ pub(crate) fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) 
 
 /// A folder of the project.
 pub(crate) fn folder(name: &str) -> PathBuf {
-    FilePath::new(env!("CARGO_MANIFEST_DIR")).join(name)
+    set_up::root().join(name)
+}
+
+/// The text of a file of the project.
+pub(crate) fn text(name: &str) -> String {
+    std::fs::read_to_string(folder(name)).expect("the file is part of the project")
 }
 
 /// The names, without their extension, of the files of a folder that have it, in order.
@@ -59,8 +64,8 @@ pub(crate) fn stems(name: &str, extension: &str) -> Vec<String> {
 
 /// Reads a shipped mechanism.
 pub(crate) fn shipped(name: &str) -> Arc<Mechanism> {
-    let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let source = Source::open(name, path.as_ref()).expect("shipped mechanisms can be read");
+    let path = folder("mechanisms").join(format!("{name}.toml"));
+    let source = Source::open(name, &path).expect("shipped mechanisms can be read");
     read(&source)
 }
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from harness import ROOT
 
-SOURCES = ROOT / "src"
+SOURCES = [ROOT / "src", ROOT / "crates/tools/src"]
 
 TOKEN = re.compile(
     r"""//[^\n]*|/\*.*?\*/"""  # comments
@@ -32,15 +32,16 @@ class Literal:
     """The code that leads to it, in one line."""
 
     def __str__(self) -> str:
-        return f"src/{self.file}:{self.line}: {self.text}"
+        return f"{self.file}:{self.line}: {self.text}"
 
 
 def sources() -> Iterator[tuple[str, str]]:
-    """The files below src/ with their text, tests left out."""
-    for path in sorted(SOURCES.rglob("*.rs")):
-        name = path.relative_to(SOURCES).as_posix()
-        if "/tests" not in name:
-            yield name, path.read_text(encoding="utf-8").split("#[cfg(test)]\nmod tests {")[0]
+    """The files of both libraries with their text, tests left out."""
+    for folder in SOURCES:
+        for path in sorted(folder.rglob("*.rs")):
+            name = path.relative_to(folder).as_posix()
+            if "/tests" not in name:
+                yield name, path.read_text(encoding="utf-8").split("#[cfg(test)]\nmod tests {")[0]
 
 
 def shown(literal: str) -> str:

@@ -34,8 +34,8 @@ NOT_RUN = {
     "make runtimes ONLY='linux64 win64'": "likewise",
     "python3 -m venv env": "for packages to be downloaded into",
     "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
-    "biela watch piston.toml": "runs until it is ended; tests/program/watch.rs has tests of its own",
-    "biela studio": "runs until it is ended; tests/program/studio.rs has tests of its own",
+    "biela watch piston.toml": "runs until it is ended; crates/tools/tests/program/watch.rs has tests of its own",
+    "biela studio": "runs until it is ended; crates/tools/tests/program/studio.rs has tests of its own",
     "biela studio four_bar.toml": "likewise",
     "biela studio piston.toml": "likewise",
     "make studio": "builds for minutes; `make test-studio` draws in it",
@@ -115,7 +115,7 @@ def run(at, command, folder, *, may_fail=False) -> list[str]:
         **os.environ,
         "PATH": path,
         # The module that `make module` has built.
-        "PYTHONPATH": str(ROOT / "python"),
+        "PYTHONPATH": str(ROOT / "crates" / "python"),
         "MPLBACKEND": "agg",
         "BIELA_EXAMPLE": "small",
     }
@@ -188,7 +188,7 @@ def test_the_inside_names_files_that_exist():
     page = ROOT / "docs" / "inside.md"
     named = re.findall(r"`([\w./*-]+/[\w./*-]+)`", page.read_text(encoding="utf-8"))
     # A path begins at the top, or in one of the folders that a row is about.
-    homes = [ROOT, ROOT / "src", ROOT / "src/kinematics", ROOT / "src/mechanism", ROOT / "src/fmi", ROOT / "src/drawing"]
+    homes = [ROOT, ROOT / "src", ROOT / "src/kinematics", ROOT / "src/mechanism", ROOT / "src/fmi", *(ROOT / "crates/tools/src" / f for f in ("", "drawing"))]
     assert len(named) > 20
     for path in named:
         found = [match for home in homes for match in home.glob(path)]

@@ -34,7 +34,7 @@ FILES_WITHOUT_MESSAGES = {
     "kinematics/reference.rs": "the oracle of the tests",
 }
 
-WITHOUT_MESSAGES = ("mechanism/", "drawing/", "studio/")
+WITHOUT_MESSAGES = ("mechanism/", "write/", "drawing/", "studio/")
 """The reader's messages are FILE_MESSAGES; drawing has none. The studio answers at once to what the hand
 does, and says what to do."""
 

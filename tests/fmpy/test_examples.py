@@ -20,7 +20,7 @@ def example(tmp_path):
             "PATH": path,
             "MPLBACKEND": "agg",
             "BIELA_EXAMPLE": "small",
-            "PYTHONPATH": str(ROOT / "python"),
+            "PYTHONPATH": str(ROOT / "crates" / "python"),
         }
         done = subprocess.run(
             [sys.executable, ROOT / "examples" / name],

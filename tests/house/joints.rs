@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::language::rust_files;
 
-/// Files and folders of `src` that name kinds of joints, as the recipe in `docs/inside.md` lists them.
+/// Files and folders of both libraries that name kinds of joints, as the recipe in `docs/inside.md` lists them.
 const RECIPE: [&str; 7] = [
     "mechanism/joint.rs",
     "mechanism/read/joint/",
@@ -18,12 +18,16 @@ const RECIPE: [&str; 7] = [
 
 #[test]
 fn only_the_files_of_the_recipe_name_kinds_of_joints() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let roots = ["src", "crates/tools/src"].map(|folder| project.join(folder));
+    let files = roots
+        .iter()
+        .flat_map(|root| rust_files(root).into_iter().map(move |file| (root, file)));
     let mut listed = [false; RECIPE.len()];
     let mut others = Vec::new();
-    for file in rust_files(&root) {
+    for (root, file) in files {
         let text = std::fs::read_to_string(&file).expect("a source is text");
-        let path = file.strip_prefix(&root).expect("it is below");
+        let path = file.strip_prefix(root).expect("it is below");
         let path = path.to_str().expect("names are ASCII");
         if !text.contains("JointKind::") || path.ends_with("tests.rs") {
             continue;

@@ -14,25 +14,43 @@ use petgraph::visit::{Bfs, EdgeRef, Reversed};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 
-/// The layers, and those that each may use.
-const LAYERS: [(&str, &[&str]); 10] = [
+/// The folders of the two libraries: that of FMUs, and that of the program on it.
+const SOURCES: [&str; 2] = ["src", "crates/tools/src"];
+
+/// The layers of both, and those that each may use.
+const LAYERS: [(&str, &[&str]); 11] = [
     ("unit", &[]),
     ("mechanism", &["unit"]),
     ("kinematics", &["unit", "mechanism"]),
     ("dynamics", &["unit", "mechanism", "kinematics"]),
+    ("fmi", &["unit", "mechanism", "kinematics", "dynamics"]),
+    ("write", &["mechanism"]),
     ("drawing", &["unit", "mechanism", "kinematics"]),
     (
         "page",
-        &["unit", "mechanism", "kinematics", "dynamics", "drawing"],
+        &[
+            "unit",
+            "mechanism",
+            "kinematics",
+            "dynamics",
+            "write",
+            "drawing",
+        ],
     ),
     (
         "studio",
-        &["unit", "mechanism", "kinematics", "drawing", "page"],
+        &[
+            "unit",
+            "mechanism",
+            "kinematics",
+            "write",
+            "drawing",
+            "page",
+        ],
     ),
-    ("fmi", &["unit", "mechanism", "kinematics", "dynamics"]),
     (
         "exchange",
-        &["unit", "mechanism", "kinematics", "drawing", "fmi"],
+        &["unit", "mechanism", "kinematics", "fmi", "write", "drawing"],
     ),
     (
         "cli",
@@ -41,21 +59,24 @@ const LAYERS: [(&str, &[&str]); 10] = [
             "mechanism",
             "kinematics",
             "dynamics",
+            "fmi",
+            "write",
             "drawing",
             "page",
-            "fmi",
             "exchange",
         ],
     ),
 ];
 
-/// The modules of the library, the root first.
+/// The modules of the libraries, the root of `biela` first.
 struct Library {
     modules: Vec<Module>,
 }
 
 struct Module {
     file: PathBuf,
+    /// The root of its library.
+    root: usize,
     parent: Option<usize>,
     children: BTreeMap<String, usize>,
     /// Paths by the name under which the module imports them.
@@ -75,17 +96,21 @@ enum Target {
 }
 
 impl Library {
-    fn read(root: &Path) -> Self {
+    fn read() -> Self {
         let mut library = Self {
             modules: Vec::new(),
         };
-        library.add_file(root.to_owned(), None);
+        for folder in SOURCES {
+            library.add_file(project().join(folder).join("lib.rs"), None);
+        }
         library
     }
 
     fn add(&mut self, file: PathBuf, parent: Option<usize>) -> usize {
+        let root = parent.map_or(self.modules.len(), |parent| self.modules[parent].root);
         self.modules.push(Module {
             file,
+            root,
             parent,
             children: BTreeMap::new(),
             imports: BTreeMap::new(),
@@ -127,13 +152,14 @@ impl Library {
     }
 
     /// Returns the module or item that a path of `module` means; `None` if it is none of the
-    /// library, or defined by `module` itself.
+    /// libraries, or defined by `module` itself.
     fn resolve(&self, module: usize, path: &[String]) -> Option<Target> {
         let [first, rest @ ..] = path else {
             return None;
         };
         let first = match first.as_str() {
-            "crate" => Target::Module(0),
+            "crate" => Target::Module(self.modules[module].root),
+            "biela" => Target::Module(0),
             "self" => Target::Module(module),
             "super" => Target::Module(self.modules[module].parent?),
             name => self.member(module, name)?,
@@ -316,12 +342,14 @@ impl<'a> Visit<'a> for Names<'_> {
     }
 }
 
-fn source_folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+fn project() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
 fn name_of(file: &Path) -> String {
-    let name = file.strip_prefix(source_folder()).expect("it is in src");
+    let mut folders = SOURCES.iter().map(|folder| project().join(folder));
+    let name = folders.find_map(|folder| file.strip_prefix(folder).ok());
+    let name = name.expect("it is a source");
     name.display().to_string().replace('\\', "/")
 }
 
@@ -398,7 +426,7 @@ fn forbidden_circles(graph: &Uses) -> Vec<BTreeSet<String>> {
 
 #[test]
 fn imports_form_no_circle() {
-    let graph = graph(&Library::read(&source_folder().join("lib.rs")));
+    let graph = graph(&Library::read());
     let mut message = String::new();
     for circle in forbidden_circles(&graph) {
         let _ = writeln!(message, "{circle:#?}:\n{}", describe(&graph, &circle));
@@ -408,7 +436,7 @@ fn imports_form_no_circle() {
 
 #[test]
 fn layers_use_those_below_them_only() {
-    let graph = graph(&Library::read(&source_folder().join("lib.rs")));
+    let graph = graph(&Library::read());
     let layer = |file: &Path| {
         let name = name_of(file);
         let layer = name.split(['/', '.']).next().expect("it has a name");
@@ -437,7 +465,7 @@ fn layers_use_those_below_them_only() {
 /// A test that finds no files, or no uses, passes always.
 #[test]
 fn every_file_is_read_and_most_are_used() {
-    let library = Library::read(&source_folder().join("lib.rs"));
+    let library = Library::read();
     let graph = graph(&library);
     assert!(graph.node_count() > 150, "{} files", graph.node_count());
     let root = graph

@@ -1,4 +1,4 @@
-//! Messages from the scripts to the solver, as types for the scripts: `page/scripts/messages.d.ts`.
+//! Messages from the scripts to the solver, as types for the scripts: `crates/page/scripts/messages.d.ts`.
 //!
 //! The types follow from the requests in Rust. `INSTA_UPDATE=always cargo test --test house messages`
 //! writes them anew; `make check-scripts` holds the scripts against them.
@@ -10,11 +10,11 @@ use syn::{Attribute, Expr, Fields, GenericArgument, Item, Lit, Meta, PathArgumen
 
 /// The requests: file, and the name of its enumeration `Request` for scripts.
 const SOURCES: [(&str, &str); 3] = [
-    ("src/page/request.rs", "PageRequest"),
-    ("src/studio/request.rs", "StudioRequest"),
-    ("studio/src/lib.rs", "ExportRequest"),
+    ("crates/tools/src/page/request.rs", "PageRequest"),
+    ("crates/tools/src/studio/request.rs", "StudioRequest"),
+    ("crates/studio/src/lib.rs", "ExportRequest"),
 ];
-const TYPES: &str = "page/scripts/messages.d.ts";
+const TYPES: &str = "crates/page/scripts/messages.d.ts";
 
 #[test]
 fn the_types_of_messages_are_those_of_the_requests() {

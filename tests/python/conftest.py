@@ -7,7 +7,7 @@ import sys
 import pytest
 from shipped import MECHANISMS, ROOT
 
-sys.path.insert(0, str(ROOT / "python"))
+sys.path.insert(0, str(ROOT / "crates" / "python"))
 
 try:
     import biela

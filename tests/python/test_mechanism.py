@@ -18,7 +18,7 @@ import pytest
 from shipped import ROOT
 from numpy.testing import assert_allclose
 
-MODULES = ["biela", *(f"biela.{path.stem}" for path in (ROOT / "python/biela").glob("[!_]*.py"))]
+MODULES = ["biela", *(f"biela.{path.stem}" for path in (ROOT / "crates/python/biela").glob("[!_]*.py"))]
 
 
 def test_errors_of_a_file_are_diagnostics(tmp_path):

@@ -5,7 +5,7 @@ mod common;
 #[path = "../common/differences.rs"]
 mod differences;
 #[path = "../common/generated.rs"]
-#[allow(dead_code, reason = "also used by `benches/`")]
+#[allow(dead_code, reason = "also used by `crates/benches`")]
 mod generated;
 
 mod assembly;

@@ -6,7 +6,7 @@ import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { completions } from "../../studio/scripts/complete.js";
+import { completions } from "../../crates/studio/scripts/complete.js";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const built = ["release", "debug"].map((profile) => `${root}target/${profile}/biela`);

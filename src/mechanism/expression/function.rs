@@ -16,7 +16,7 @@ pub(in crate::mechanism) const CONSTANTS: [(&str, f64); 6] = [
 ];
 
 /// Returns the value of a constant.
-pub(crate) fn constant(name: &str) -> Option<f64> {
+pub fn constant(name: &str) -> Option<f64> {
     let known = CONSTANTS.iter().find(|(constant, _)| *constant == name);
     known.map(|(_, value)| *value)
 }

@@ -10,7 +10,7 @@ impl Expression {
     /// Returns the expression with the values of its parameters in place of their names, `time` for
     /// time, and each operation in brackets; `None` if it has a function for whose name `function` has
     /// no other.
-    pub(crate) fn infix(
+    pub fn infix(
         &self,
         parameter: &impl Fn(ParameterId) -> f64,
         time: &str,

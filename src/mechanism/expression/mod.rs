@@ -12,7 +12,6 @@ mod dimension;
 mod error;
 mod function;
 mod in_force;
-#[cfg(feature = "cli")]
 mod infix;
 mod linear;
 mod parse;
@@ -28,19 +27,16 @@ mod tests;
 pub use error::ExpressionError;
 use function::Binary;
 pub(super) use function::CONSTANTS;
-#[cfg(feature = "page")]
-pub(crate) use function::constant;
+pub use function::constant;
 pub(super) use in_force::ExpressionInForce;
 pub use linear::LinearForm;
 pub(super) use parse::{LawOfCoupling, MovingNames, Parsed, Scope};
 pub(super) use pieces::MOST_SWITCHES;
-pub(crate) use reserved::is_taken;
-#[cfg(feature = "cli")]
+pub use reserved::is_taken;
 pub(super) use reserved::taken;
 pub(crate) use seams::joins;
 pub(super) use seams::seams;
-#[cfg(feature = "page")]
-pub(crate) use token::names_in;
+pub use token::names_in;
 
 use super::force_quantity::ForceQuantity;
 use super::number::{self, Interval, Jet3, Number, Unary};
@@ -204,8 +200,7 @@ impl Expression {
     }
 
     /// Makes the multiple of a variable.
-    #[cfg(feature = "page")]
-    pub(crate) fn multiple(factor: f64, of: Variable) -> Self {
+    pub fn multiple(factor: f64, of: Variable) -> Self {
         Self::new(vec![
             Operation::Number(factor),
             Operation::Variable(of),

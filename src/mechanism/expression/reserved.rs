@@ -22,7 +22,7 @@ pub(in crate::mechanism) fn taken() -> impl Iterator<Item = &'static str> {
 }
 
 /// Returns whether parameters, bodies, joints and the like cannot be called `name`.
-pub(crate) fn is_taken(name: &str) -> bool {
+pub fn is_taken(name: &str) -> bool {
     taken().any(|taken| taken == name)
 }
 

@@ -70,8 +70,7 @@ pub(super) fn scan(text: &str, from: usize) -> Result<Token<'_>, ExpressionError
 
 /// Returns the places of the names in an expression, but for those of functions; up to a fault of
 /// the text.
-#[cfg(feature = "page")]
-pub(crate) fn names_in(text: &str) -> Vec<Span> {
+pub fn names_in(text: &str) -> Vec<Span> {
     let mut names: Vec<Span> = Vec::new();
     let mut at = 0;
     while let Ok(token) = scan(text, at) {

@@ -213,7 +213,7 @@ impl<N: Number> MotionInForce<N> {
 }
 
 /// Returns the first of value, velocity and acceleration of a motion that is not finite.
-pub(crate) fn not_finite(motion: Jet) -> Option<&'static str> {
+pub fn not_finite(motion: Jet) -> Option<&'static str> {
     let parts = [
         (motion.value, "the value"),
         (motion.first(), "the velocity"),

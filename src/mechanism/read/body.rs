@@ -7,7 +7,6 @@ use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Unit};
 
 use super::context::Context;
 use super::kind::{Array, Entry, Fields, Item, Kind, Text, schema};
-#[cfg(feature = "cli")]
 use super::kind::{Described, NAME};
 use super::number::{ANGLE, LENGTH, NUMBER, Number, POINT, Quantity};
 use super::table::{Field, Keys, table};

@@ -7,7 +7,6 @@ use crate::mechanism::{DerivedMeasure, ForceQuantity, Mechanism, Unit, Variable}
 use super::context::Context;
 use super::coordinate::{CoordinateKeys, MeasureKeys};
 use super::kind::{AnyOf, Entry, Item, Kind, Text, schema};
-#[cfg(feature = "cli")]
 use super::number::NUMBER;
 use super::parameter::SiUnit;
 use super::table::table;

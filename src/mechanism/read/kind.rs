@@ -23,11 +23,9 @@ pub(super) trait Kind<'a> {
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Self::Value>;
 
     /// Returns the JSON Schema.
-    #[cfg(feature = "cli")]
     fn schema(&self) -> serde_json::Value;
 
     /// Returns the unit of the value's numbers.
-    #[cfg(feature = "cli")]
     fn unit(&self) -> Option<&'static str> {
         None
     }
@@ -36,14 +34,12 @@ pub(super) trait Kind<'a> {
 /// Implements [`Kind::schema`] by a JSON value.
 macro_rules! schema {
     ($this:ident => $($json:tt)+) => {
-        #[cfg(feature = "cli")]
         fn schema(&self) -> serde_json::Value {
             let $this = self;
             serde_json::json!($($json)+)
         }
     };
     ($($json:tt)+) => {
-        #[cfg(feature = "cli")]
         fn schema(&self) -> serde_json::Value {
             serde_json::json!($($json)+)
         }
@@ -53,7 +49,6 @@ macro_rules! schema {
 pub(super) use schema;
 
 /// Pattern of names in the JSON Schema.
-#[cfg(feature = "cli")]
 pub(super) const NAME: &str = "^[A-Za-z][A-Za-z0-9_]*$";
 
 /// Keys and values of a table of the file.
@@ -254,7 +249,6 @@ impl<'a, K: Kind<'a>, const N: usize> Kind<'a> for Array<K, N> {
         }
     }
 
-    #[cfg(feature = "cli")]
     fn unit(&self) -> Option<&'static str> {
         self.items[0].unit()
     }
@@ -293,7 +287,6 @@ impl<'a, K: Kind<'a, Value: Copy + Eq + Hash>> Kind<'a> for List<K> {
 
 /// Part of the file that editors know by a schema and that is read later.
 pub(super) trait Described {
-    #[cfg(feature = "cli")]
     fn schema() -> serde_json::Value;
 }
 
@@ -301,7 +294,6 @@ pub(super) trait Described {
 pub(super) struct AnyOf<A, B>(PhantomData<(A, B)>);
 
 impl<A: Described, B: Described> Described for AnyOf<A, B> {
-    #[cfg(feature = "cli")]
     fn schema() -> serde_json::Value {
         serde_json::json!({ "anyOf": [A::schema(), B::schema()] })
     }

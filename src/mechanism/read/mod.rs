@@ -98,19 +98,15 @@ impl Mechanism {
     ///
     /// It knows keys, types, units and choices. Only [`parse`](Self::parse) finds problems that
     /// depend on several places, such as a name that does not exist.
-    #[cfg(feature = "cli")]
     #[must_use]
     pub fn schema() -> serde_json::Value {
         root::schema()
     }
-}
 
-/// Returns the keys of a file in their order: its own texts, then its sections.
-#[cfg(feature = "page")]
-pub(super) fn root_keys() -> impl Iterator<Item = &'static str> {
-    <Root as table::Keys>::keys()
-        .into_iter()
-        .map(|key| key.name)
+    /// Returns the keys of a file in their order: its own texts, then its sections.
+    pub fn keys() -> impl Iterator<Item = &'static str> {
+        <Root as table::Keys>::names().into_iter()
+    }
 }
 
 impl<'a> Context<'a> {

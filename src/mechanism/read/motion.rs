@@ -9,10 +9,8 @@ use crate::mechanism::{
 };
 
 use super::context::Context;
-#[cfg(feature = "cli")]
 use super::kind::Described;
 use super::kind::{Item, Kind, Word, schema};
-#[cfg(feature = "cli")]
 use super::number::NUMBER;
 use super::points::{PointKeys, PointTable};
 use super::table::table;

@@ -93,7 +93,6 @@ impl<'a> Kind<'a> for Number {
         }
     }
 
-    #[cfg(feature = "cli")]
     fn unit(&self) -> Option<&'static str> {
         self.unit.map(|unit| unit.name)
     }

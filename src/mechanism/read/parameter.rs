@@ -13,7 +13,6 @@ use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, Parameter
 
 use super::context::Context;
 use super::kind::{Described, Entry, Flag, Item, Kind, Text, Word, schema, word_here};
-#[cfg(feature = "cli")]
 use super::number::NUMBER;
 use super::number::{Formula, Limit, Quantity};
 use super::table::{Field, table};
@@ -45,7 +44,6 @@ table! {
 pub(super) struct AnyParameter;
 
 impl Described for AnyParameter {
-    #[cfg(feature = "cli")]
     fn schema() -> serde_json::Value {
         serde_json::json!({ "anyOf": [NUMBER.schema(), ParameterKeys::schema()] })
     }

@@ -7,7 +7,6 @@ use crate::mechanism::{Coordinate, Span};
 
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
-#[cfg(feature = "cli")]
 use super::kind::NAME;
 use super::kind::{AnyOf, Entry, Item, Kind, schema};
 use super::table::{Keys, table};

@@ -7,7 +7,6 @@ use crate::mechanism::wording::quoted;
 use crate::mechanism::{BodyId, MarkerId, Span};
 
 use super::context::{Context, GROUND};
-#[cfg(feature = "cli")]
 use super::kind::NAME;
 use super::kind::{Array, Item, Kind, schema, word_here};
 

@@ -3,7 +3,6 @@
 use std::marker::PhantomData;
 
 use crate::mechanism::diagnostic::code;
-#[cfg(feature = "cli")]
 use crate::mechanism::names::c_keywords;
 use crate::mechanism::names::{MOST_CHARACTERS, is_c_identifier, is_device, similar_identifier};
 use crate::mechanism::syntax;
@@ -18,7 +17,6 @@ use super::force::AnyForce;
 use super::freedom::FreedomKeys;
 use super::friction::AnyFriction;
 use super::joint::AnyJoint;
-#[cfg(feature = "cli")]
 use super::kind::Described;
 use super::kind::{Entry, Fields, Item, Kind, Named, Section, Text, schema};
 use super::parameter::AnyParameter;
@@ -95,7 +93,6 @@ impl<'a> Kind<'a> for Format {
 }
 
 /// Pattern of names for which [`is_device`] holds.
-#[cfg(feature = "cli")]
 const DEVICE: &str =
     "^([Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]|([Cc][Oo][Mm]|[Ll][Pp][Tt])[0-9])$";
 
@@ -144,7 +141,6 @@ impl<'a> Kind<'a> for ModelName {
 }
 
 /// Returns the JSON Schema of mechanism files.
-#[cfg(feature = "cli")]
 pub(super) fn schema() -> serde_json::Value {
     use serde_json::json;
     let mut schema = Root::schema();

@@ -16,15 +16,13 @@ use super::kind::{Described, Entry, Fields, Item, Kind};
 use super::number::Quantity;
 use super::other_words;
 
-/// Key of a table.
+/// Key of a table in the JSON Schema.
 pub(super) struct Key {
     pub(super) name: &'static str,
     /// Whether the table must have the key.
-    #[cfg(feature = "cli")]
     pub(super) required: bool,
-    /// Returns the schema of its value, with its meaning.
-    #[cfg(feature = "cli")]
-    pub(super) schema: fn() -> serde_json::Value,
+    /// The schema of its value, with its meaning.
+    pub(super) schema: serde_json::Value,
 }
 
 /// Two keys of which a table has exactly one; the code and the help of the error otherwise.
@@ -33,10 +31,13 @@ pub(super) type Alternative = ([&'static str; 2], &'static str, &'static str);
 /// Table declared by [`table!`], or two that share one table of the file.
 pub(super) trait Keys<'a>: Sized {
     /// Meaning of the table, for editors.
-    #[cfg(feature = "cli")]
     const MEANING: &'static str;
 
-    fn keys() -> Vec<&'static Key>;
+    /// Returns the names of the keys.
+    fn names() -> Vec<&'static str>;
+
+    /// Returns the keys. A function of its own: a library that asks for no schema holds none.
+    fn keys() -> Vec<Key>;
 
     fn alternative() -> Option<Alternative>;
 
@@ -45,11 +46,14 @@ pub(super) trait Keys<'a>: Sized {
 }
 
 impl<'a, A: Keys<'a>, B: Keys<'a>> Keys<'a> for (A, B) {
-    #[cfg(feature = "cli")]
     const MEANING: &'static str = B::MEANING;
 
-    fn keys() -> Vec<&'static Key> {
-        [A::keys(), B::keys()].concat()
+    fn names() -> Vec<&'static str> {
+        [A::names(), B::names()].concat()
+    }
+
+    fn keys() -> Vec<Key> {
+        A::keys().into_iter().chain(B::keys()).collect()
     }
 
     fn alternative() -> Option<Alternative> {
@@ -156,23 +160,23 @@ macro_rules! table {
         }
 
         impl<$life> $crate::mechanism::read::table::Keys<$life> for $name<$life> {
-            #[cfg(feature = "cli")]
             const MEANING: &'static str = concat!($($meaning),+);
 
-            fn keys() -> Vec<&'static $crate::mechanism::read::table::Key> {
-                static KEYS: &[$crate::mechanism::read::table::Key] = &[$(
+            fn names() -> Vec<&'static str> {
+                vec![$($crate::mechanism::read::table::key_name(stringify!($key)),)*]
+            }
+
+            fn keys() -> Vec<$crate::mechanism::read::table::Key> {
+                vec![$(
                     $crate::mechanism::read::table::Key {
                         name: $crate::mechanism::read::table::key_name(stringify!($key)),
-                        #[cfg(feature = "cli")]
-                        required: [$($example,)? ""][0].len() > 0,
-                        #[cfg(feature = "cli")]
-                        schema: || $crate::mechanism::read::table::key_schema(
+                        required: ![$($example,)? ""][0].is_empty(),
+                        schema: $crate::mechanism::read::table::key_schema(
                             &$kind,
                             concat!($($key_meaning),+),
                         ),
                     },
-                )*];
-                KEYS.iter().collect()
+                )*]
             }
 
             fn alternative() -> Option<$crate::mechanism::read::table::Alternative> {
@@ -224,7 +228,7 @@ impl<'a> Context<'a> {
 
     /// Reports unknown and conflicting keys.
     fn check_keys<T: Keys<'a>>(&mut self, fields: &Fields<'a>) {
-        let known: Vec<&'static str> = T::keys().iter().map(|key| key.name).collect();
+        let known: Vec<&'static str> = T::names();
         for (key, value) in fields.table {
             let name: &str = key.get_ref();
             if !known.contains(&name) {
@@ -313,7 +317,6 @@ impl<'a> Context<'a> {
 }
 
 /// Returns the schema of a key's value with its meaning and its unit.
-#[cfg(feature = "cli")]
 pub(super) fn key_schema<'a>(kind: &impl Kind<'a>, meaning: &str) -> serde_json::Value {
     let meaning = meaning.trim();
     let mut schema = kind.schema();
@@ -326,16 +329,19 @@ pub(super) fn key_schema<'a>(kind: &impl Kind<'a>, meaning: &str) -> serde_json:
 
 /// A table is described by its keys and has no others.
 impl<T: Keys<'static>> Described for T {
-    #[cfg(feature = "cli")]
     fn schema() -> serde_json::Value {
         let keys = T::keys();
-        let properties = keys.iter().map(|key| (key.name.to_owned(), (key.schema)()));
-        let required = keys.iter().filter(|key| key.required).map(|key| key.name);
+        let required: Vec<_> = (keys.iter().filter(|key| key.required))
+            .map(|key| key.name)
+            .collect();
+        let properties = keys
+            .into_iter()
+            .map(|key| (key.name.to_owned(), key.schema));
         let mut schema = serde_json::json!({
             "type": "object",
             "description": T::MEANING.trim(),
             "properties": properties.collect::<serde_json::Map<_, _>>(),
-            "required": required.collect::<Vec<_>>(),
+            "required": required,
             "additionalProperties": false,
         });
         if let Some(([first, second], ..)) = T::alternative() {

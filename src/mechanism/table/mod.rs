@@ -5,8 +5,7 @@ mod separated;
 
 pub(super) use file::MOST_POINTS;
 pub use file::TableFile;
-#[cfg(feature = "cli")]
-pub(crate) use separated::{Separated, comma_hint};
+pub use separated::{Separated, comma_hint};
 
 use super::{Expression, Number, ParameterId};
 

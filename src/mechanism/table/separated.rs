@@ -6,21 +6,17 @@ use std::borrow::Cow;
 /// blanks. Lines that start with `#` are skipped, and so are empty ones and a byte order mark. A line
 /// `sep=;` before all others names the separator.
 #[derive(Debug)]
-pub(crate) struct Separated<'a> {
+pub struct Separated<'a> {
     text: Cow<'a, str>,
     delimiter: u8,
     /// Whether blanks separate the columns; commas have taken their place.
-    #[cfg_attr(
-        not(feature = "cli"),
-        expect(dead_code, reason = "headers are the program's")
-    )]
     has_blanks: bool,
 }
 
 impl<'a> Separated<'a> {
     /// Makes a reader of the text. A line such as `sep=;`, or else the first line that is no comment,
     /// decides the separator.
-    pub(crate) fn new(text: &'a str) -> Self {
+    pub fn new(text: &'a str) -> Self {
         let text = text.trim_start_matches('\u{feff}');
         let separated = |text, delimiter| Self {
             text,
@@ -56,7 +52,7 @@ impl<'a> Separated<'a> {
 
     /// Returns a finite number of a field. Its decimal mark is a point or, where no comma separates the
     /// columns, a comma.
-    pub(crate) fn number(&self, field: &str) -> Option<f64> {
+    pub fn number(&self, field: &str) -> Option<f64> {
         let number = match self.delimiter {
             b',' => field.parse(),
             _ => field.replacen(',', ".", 1).parse(),
@@ -66,7 +62,7 @@ impl<'a> Separated<'a> {
 
     /// Returns the rows, of any number of columns: the line, from 1, and the fields without the
     /// blanks around them.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = (u64, csv::StringRecord)> {
+    pub fn rows(&self) -> impl Iterator<Item = (u64, csv::StringRecord)> {
         let reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .comment(Some(b'#'))
@@ -85,8 +81,7 @@ impl<'a> Separated<'a> {
 
     /// Returns a row of names. Where blanks separate the columns, a unit in brackets belongs to the
     /// name before it: `time [s]`.
-    #[cfg(feature = "cli")]
-    pub(crate) fn names(&self, row: &csv::StringRecord) -> csv::StringRecord {
+    pub fn names(&self, row: &csv::StringRecord) -> csv::StringRecord {
         let mut names: Vec<String> = Vec::new();
         for field in row {
             match names.last_mut() {
@@ -127,14 +122,13 @@ fn is_comment(line: &str) -> bool {
     line.starts_with('#')
 }
 
-#[cfg(feature = "cli")]
 fn is_bracketed(field: &str) -> bool {
     let mut pairs = [('[', ']'), ('(', ')')].into_iter();
     pairs.any(|(open, close)| field.starts_with(open) && field.ends_with(close))
 }
 
 /// Returns a hint for a field that is no number.
-pub(crate) fn comma_hint(found: &str) -> &'static str {
+pub fn comma_hint(found: &str) -> &'static str {
     if found.contains(',') && found.contains('.') {
         "; digits are not grouped"
     } else if found.contains(',') {

@@ -2,11 +2,9 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::context::Context;
-#[cfg(feature = "cli")]
 use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Flag, Item, Kind, Word, schema};
 use crate::mechanism::read::motion::LAW;
-#[cfg(feature = "cli")]
 use crate::mechanism::read::number::NUMBER;
 use crate::mechanism::read::number::{LENGTH, Quantity, RATIO};
 use crate::mechanism::read::points::PointKeys;

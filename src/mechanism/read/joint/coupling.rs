@@ -5,7 +5,6 @@ use std::collections::HashSet;
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::{LawOfCoupling, MovingNames};
 use crate::mechanism::read::context::Context;
-#[cfg(feature = "cli")]
 use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Item, Kind, schema};
 use crate::mechanism::read::motion::MotionKeys;

@@ -2,7 +2,6 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::context::Context;
-#[cfg(feature = "cli")]
 use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Flag, Item, Kind, schema};
 use crate::mechanism::read::number::{Formula, LENGTH, NUMBER, Quantity};

@@ -55,8 +55,6 @@ pub(super) struct JointType {
     synonyms: &'static [(&'static str, Option<&'static str>)],
     /// Reads the keys of the type.
     read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<Made>,
-    #[cfg(feature = "cli")]
-    schema: fn() -> serde_json::Value,
 }
 
 /// Declares a type of joint: its name and other terms for it, some with the keys to write for them,
@@ -103,9 +101,12 @@ macro_rules! joint_type {
                 let kind: for<$life> fn($keys<$life>, &mut $crate::mechanism::read::context::Context<$life>) -> _ = $kind;
                 $read(context, fields, kind)
             },
-            #[cfg(feature = "cli")]
-            schema: <($common, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema,
         };
+
+        /// Returns the schema of a joint of the type.
+        pub(super) fn schema() -> serde_json::Value {
+            <($common, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema()
+        }
     };
 }
 
@@ -131,23 +132,35 @@ fn read_own<'a, K: Keys<'a>>(
 
 use joint_type;
 
-/// Every type of joint; a new one is a file and a line here.
-static JOINT_TYPES: &[&JointType] = &[
-    &revolute::TYPE,
-    &translational::TYPE,
-    &slot::TYPE,
-    &link::TYPE,
-    &revolute_translational::TYPE,
-    &weld::TYPE,
-    &gear::TYPE,
-    &belt::TYPE,
-    &rack_and_pinion::TYPE,
-    &rolling::TYPE,
-    &cam::TYPE,
-    &coupling::TYPE,
-    &rope::TYPE,
-    &curve::TYPE,
-];
+/// Lists the types of joints, each by its file.
+macro_rules! joint_types {
+    ($($file:ident,)+) => {
+        static JOINT_TYPES: &[&JointType] = &[$(&$file::TYPE),+];
+
+        /// Returns the schema of each type.
+        fn schemas() -> Vec<serde_json::Value> {
+            vec![$($file::schema()),+]
+        }
+    };
+}
+
+// A new type is a file and a line here.
+joint_types! {
+    revolute,
+    translational,
+    slot,
+    link,
+    revolute_translational,
+    weld,
+    gear,
+    belt,
+    rack_and_pinion,
+    rolling,
+    cam,
+    coupling,
+    rope,
+    curve,
+}
 
 const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT_TYPE, || {
     let joint_types = JOINT_TYPES.iter();
@@ -186,12 +199,10 @@ impl<'a> Context<'a> {
 pub(super) struct AnyJoint;
 
 impl Described for AnyJoint {
-    #[cfg(feature = "cli")]
     fn schema() -> serde_json::Value {
         use serde_json::json;
         let mut joint = JointKeys::schema();
-        let branches = JOINT_TYPES.iter().map(|joint_type| {
-            let mut keys = (joint_type.schema)();
+        let branches = JOINT_TYPES.iter().zip(schemas()).map(|(joint_type, mut keys)| {
             // The choice of types stands outside of the branches.
             keys["properties"]["type"] = json!(true);
             json!({ "if": { "properties": { "type": { "const": joint_type.name } } }, "then": keys })

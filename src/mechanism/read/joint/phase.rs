@@ -4,7 +4,6 @@ use toml::de::DeValue;
 
 use crate::mechanism::read::context::Context;
 use crate::mechanism::read::kind::{Item, Kind, schema};
-#[cfg(feature = "cli")]
 use crate::mechanism::read::number::NUMBER;
 use crate::mechanism::read::number::Number;
 use crate::mechanism::read::number::Quantity;

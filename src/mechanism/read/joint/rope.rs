@@ -4,7 +4,6 @@ use std::collections::HashSet;
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::read::context::Context;
-#[cfg(feature = "cli")]
 use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Flag, Item, Kind, Word, schema};
 use crate::mechanism::read::number::{LENGTH, Number, Quantity, RATIO};

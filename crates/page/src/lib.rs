@@ -1,0 +1,5 @@
+//! `biela_tools::page` for a browser.
+
+mod abi;
+
+use biela_tools::page::Host;

@@ -1,0 +1,56 @@
+//! The Python module `biela._biela`: what the package `biela` computes in Rust.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `error` | errors as exceptions of the package |
+//! | `scenario` | parameters, and motions of drivers as samples |
+//! | `runner` | a mechanism that moves along samples |
+//! | `run`, `film` | one motion with its gradients; its animation |
+//! | `sweep` | the same motion of many variants, on all cores |
+//! | `timing`, `follower` | drivers whose values are free; a mechanism that follows targets |
+//! | `fit`, `attempt` | targets: costs of many variants; unknowns that a fit improves |
+//! | `mechanism`, `rows` | the class `Mechanism`; what it returns as tuples |
+//!
+//! Shapes, units and names of Python are the package's business; here arrays are flat.
+
+mod attempt;
+mod error;
+mod film;
+mod fit;
+mod follower;
+mod mechanism;
+mod rows;
+mod run;
+mod runner;
+mod scenario;
+mod sweep;
+mod timing;
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+/// Runs the program with these arguments, the first being its own name; returns its exit status.
+#[pyfunction]
+fn program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| biela_tools::cli::status(arguments))
+}
+
+/// Says that a name is unknown, with the known name that may be meant.
+#[pyfunction]
+fn unknown_name(kind: &str, name: &str, known: Vec<String>) -> String {
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    biela_tools::cli::unknown_name(kind, name, &known)
+}
+
+#[pymodule]
+fn _biela(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(program, module)?)?;
+    module.add_function(wrap_pyfunction!(unknown_name, module)?)?;
+    module.add_class::<mechanism::Mechanism>()?;
+    module.add_class::<run::Run>()?;
+    module.add_class::<sweep::Sweep>()?;
+    module.add_class::<fit::Targets>()?;
+    module.add_class::<attempt::Attempt>()
+}

@@ -1,0 +1,565 @@
+//! The class `Mechanism`: a mechanism file, and what can be asked of it.
+
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+
+use biela::dynamics::Motion;
+use biela::kinematics::{
+    Direction, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices, offer_start,
+};
+use biela::mechanism::{Diagnostic, DriverId, Mechanism as Model, Order, ParameterId, Source};
+use biela_tools::cli;
+use biela_tools::drawing::{Diagram, Followed, ForcePlace, svg};
+use biela_tools::page::{Place, edit};
+use pyo3::prelude::*;
+
+use crate::attempt::Attempt;
+use crate::error::{Failure, exception};
+use crate::fit::Targets;
+use crate::follower::{Fit, Target};
+use crate::rows::{
+    DriverRow, ParameterRow, Problem, RangeRow, driver_row, parameter_row, problems, range_row,
+};
+use crate::run::{Run, run};
+use crate::runner::Runner;
+use crate::scenario::{Drive, Home, Scenario, Value, parameter, parameters, take_starts};
+use crate::sweep::{Sweep, sweep};
+use crate::timing::FreeDriver;
+
+/// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
+/// these are all.
+type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
+/// Name, force and description of what holds a coordinate.
+type HeldRow = (String, f64, String);
+/// Values of drivers, q, names of states and of inputs, A, B, C and D by rows, and what holds.
+type LinearRow = (
+    Vec<f64>,
+    Vec<f64>,
+    Vec<String>,
+    Vec<String>,
+    [Vec<f64>; 4],
+    Vec<HeldRow>,
+);
+
+/// Times, and motions of drivers.
+type Motions = (Vec<f64>, Vec<(String, Drive)>);
+
+/// A target of a fit: number of poses, driver whose values are free and whether they are in order,
+/// columns, values wanted by column, then by pose, and the factor of its residuals.
+type TargetRow = (usize, Option<(String, bool)>, Vec<usize>, Vec<f64>, f64);
+
+/// Contents of a drawing: traces, number of poses, driver that moves, dimensions, instant centres,
+/// forces.
+type Contents = (bool, usize, Option<String>, bool, bool, bool);
+
+/// A mechanism file that has no errors.
+#[pyclass(frozen)]
+pub(crate) struct Mechanism {
+    source: Source,
+    model: Arc<Model>,
+    warnings: Vec<Diagnostic>,
+    /// The pose of the file's own values, once it was asked for.
+    home: OnceLock<Arc<Home>>,
+    /// The columns of a run, once they were asked for.
+    columns: OnceLock<Vec<Output>>,
+}
+
+#[pymethods]
+impl Mechanism {
+    /// Reads a text, or the file at `path`.
+    #[new]
+    #[pyo3(signature = (name, text=None, path=None))]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        text: Option<String>,
+        path: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let source = source(&name, text, path)?;
+        match Model::parse(&source) {
+            Ok((model, warnings)) => Ok(Self {
+                source,
+                model: Arc::new(model),
+                warnings,
+                home: OnceLock::new(),
+                columns: OnceLock::new(),
+            }),
+            Err(errors) => {
+                let text = cli::render::render(&source, &errors, false);
+                Err(exception(
+                    py,
+                    "MechanismError",
+                    (text, problems(&source, &errors)),
+                ))
+            }
+        }
+    }
+
+    /// Returns the report of `biela check --format json` on a text, or on the file at `path`.
+    #[staticmethod]
+    #[pyo3(signature = (name, text=None, path=None, modes=false))]
+    fn check(
+        py: Python<'_>,
+        name: String,
+        text: Option<String>,
+        path: Option<PathBuf>,
+        modes: bool,
+    ) -> Result<String, Failure> {
+        let source = source(&name, text, path)?;
+        Ok(py.detach(|| cli::check(&source, modes).to_string()))
+    }
+
+    /// Returns the report of `biela check --format json`.
+    fn report(&self, py: Python<'_>, modes: bool) -> String {
+        py.detach(|| cli::check(&self.source, modes).to_string())
+    }
+
+    /// Returns whether the file names tables, which are beside it.
+    #[getter]
+    fn has_tables(&self) -> bool {
+        !self.model.table_files.is_empty()
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.model.name
+    }
+
+    #[getter]
+    fn description(&self) -> &str {
+        &self.model.description
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        self.source.text()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<Problem> {
+        problems(&self.source, &self.warnings)
+    }
+
+    /// Returns the warnings as the program shows them.
+    #[getter]
+    fn warnings_text(&self) -> String {
+        cli::render::render(&self.source, &self.warnings, false)
+    }
+
+    #[getter]
+    fn parameters(&self) -> Vec<ParameterRow> {
+        self.model.parameters.iter().map(parameter_row).collect()
+    }
+
+    #[getter]
+    fn drivers(&self) -> Vec<DriverRow> {
+        self.model.drivers.iter().map(driver_row).collect()
+    }
+
+    #[getter]
+    fn bodies(&self) -> Vec<String> {
+        let bodies = self.model.bodies.iter();
+        bodies.map(|body| body.name.clone()).collect()
+    }
+
+    /// Returns the names and units of the columns of a run.
+    #[getter]
+    fn columns(&self, py: Python<'_>) -> Vec<(String, &'static str)> {
+        let columns = py.detach(|| self.all_columns()).iter();
+        columns
+            .map(|column| (column.name.clone(), column.unit.name))
+            .collect()
+    }
+
+    /// Returns start, stop and step of the file \[s\].
+    #[getter]
+    fn simulation(&self) -> (f64, f64, f64) {
+        let simulation = &self.model.simulation;
+        (simulation.start, simulation.stop, simulation.step)
+    }
+
+    /// Returns the values of all parameters \[SI\] where some are set, in the order of `parameters`.
+    fn values(&self, parameters: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
+        self.in_force(parameters)
+    }
+
+    /// Runs the mechanism; `columns` are indices, `by` names of parameters.
+    fn run(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        columns: Vec<usize>,
+        by: Vec<String>,
+    ) -> Result<Run, Failure> {
+        py.detach(|| {
+            let mut scenario = self.scenario(motions)?;
+            let mut parameters = parameters;
+            scenario.set_starts(&take_starts(&self.model, &mut parameters)?);
+            let parameters = self.in_force(parameters)?;
+            let by = by.iter().map(|name| self.direction(name));
+            let by: Vec<_> = by.collect::<Result<_, _>>()?;
+            let told = self.all_columns().iter().filter(|column| column.is_told());
+            let told = told.cloned().collect();
+            run(&scenario, &parameters, &self.chosen(&columns), &by, told)
+        })
+    }
+
+    /// Runs variants of the mechanism; each swept parameter has one value per variant.
+    fn sweep(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        swept: Vec<(String, Vec<f64>)>,
+        variants: usize,
+        columns: Vec<usize>,
+    ) -> Result<Sweep, Failure> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let parameters = self.in_force(parameters)?;
+            let swept = swept.into_iter();
+            let swept = swept.map(|(name, values)| Ok((self.free(&name)?, values)));
+            let swept: Vec<_> = swept.collect::<Result<_, Failure>>()?;
+            let columns = self.chosen(&columns);
+            sweep(&scenario, &parameters, &swept, variants, &columns)
+        })
+    }
+
+    /// Prepares a fit of the parameters `free`. The rows of the motion are those of the targets, one
+    /// after the other; the driver `turns` shall turn fully.
+    fn targets(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        targets: Vec<TargetRow>,
+        free: Vec<String>,
+        turns: Option<String>,
+    ) -> Result<Targets, Failure> {
+        py.detach(|| {
+            let mut rows = 0;
+            let targets = targets.into_iter();
+            let targets = targets.map(|(poses, free_driver, columns, wanted, weight)| {
+                let free_driver = free_driver.map(|(name, in_order)| {
+                    FreeDriver::new(&self.model, self.driver_named(&name)?, in_order)
+                });
+                rows += poses;
+                Ok(Target {
+                    rows: rows - poses..rows,
+                    free_driver: free_driver.transpose()?,
+                    columns: self.chosen(&columns),
+                    wanted,
+                    weight,
+                    // The fit sets both.
+                    residuals: 0..0,
+                    unknowns: 0..0,
+                })
+            });
+            let targets = targets.collect::<Result<Vec<_>, Failure>>()?;
+            let scenario = self.scenario(motions)?;
+            let timed = |id| {
+                let drivers = targets
+                    .iter()
+                    .filter_map(|target| target.free_driver.as_ref());
+                drivers.map(|free| free.driver).any(|driver| driver == id)
+            };
+            let mut drivers = scenario.driven.drivers.iter().enumerate();
+            let moves_freely =
+                drivers.find(|(index, driver)| driver.is_free() && !timed(DriverId(*index)));
+            if let Some((_, freedom)) = moves_freely {
+                return Err(Failure::Usage(format!(
+                    "drive: a fit needs to know how freedom `{}` moves",
+                    freedom.name
+                )));
+            }
+            let free = free.iter().map(|name| self.free(name));
+            Ok(Targets::new(Fit::new(
+                scenario,
+                targets,
+                free.collect::<Result<_, _>>()?,
+                turns.map(|name| self.driver_named(&name)).transpose()?,
+            )))
+        })
+    }
+
+    /// Returns the text of the file with the parameters of these names at their values in an
+    /// attempt, and its pose as estimates.
+    fn fitted(
+        &self,
+        py: Python<'_>,
+        attempt: &Attempt,
+        names: Vec<String>,
+    ) -> Result<String, Failure> {
+        py.detach(|| self.text_at(&names, &attempt.home()))
+    }
+
+    /// Finds the range of a driver from the start of a motion.
+    fn range<'py>(
+        &self,
+        py: Python<'py>,
+        driver: &str,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+    ) -> Result<RangeRow<'py>, Failure> {
+        let (id, range) = py.detach(|| -> Result<_, Failure> {
+            let scenario = self.scenario(motions)?;
+            let id = self.driver_named(driver)?;
+            let mut runner = Runner::new(&scenario, &[])?;
+            runner.start(&self.in_force(parameters)?)?;
+            Ok((
+                id,
+                runner.motion.solver.range(id, &RangeSettings::default()),
+            ))
+        })?;
+        Ok(range_row(py, &self.model, id, &range))
+    }
+
+    /// Finds the other assembly modes at the start of a motion.
+    fn modes(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+    ) -> Result<ModesRow, Failure> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let mut runner = Runner::new(&scenario, &[])?;
+            runner.start(&self.in_force(parameters)?)?;
+            let modes = runner.motion.solver.modes()?;
+            let count = 3 * self.model.bodies.len();
+            let others = modes.others.into_iter();
+            let others = others.map(|Mode { q, rcond, .. }| (q[..count].to_vec(), rcond));
+            Ok((others.collect(), modes.complete))
+        })
+    }
+
+    /// Linearizes the free motion at the start of a motion, or at the equilibrium downhill from it;
+    /// returns the drivers' values, q, the names of states and inputs, A, B, C and D by rows, and name, force
+    /// and description of what holds.
+    fn linearize(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        columns: Vec<usize>,
+        balance: bool,
+    ) -> Result<LinearRow, Failure> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let all = self.all_columns();
+            let outputs: Vec<Output> = columns.iter().map(|index| all[*index].clone()).collect();
+            let mut runner = Runner::new(&scenario, &outputs)?;
+            runner.start(&self.in_force(parameters)?)?;
+            let space = runner.linearize(&outputs, balance)?;
+            let matrices = space.matrices().map(|rows| rows.concat());
+            let held = space.held.iter().map(|held| {
+                let mechanism = runner.motion.solver.mechanism();
+                let name = held.name(mechanism).to_owned();
+                (name, held.size, held.describe(mechanism))
+            });
+            let held = held.collect();
+            let pose = runner.motion.solver.pose();
+            Ok((
+                pose.drivers.clone(),
+                pose.q[..3 * self.model.bodies.len()].to_vec(),
+                space.states,
+                space.inputs,
+                matrices,
+                held,
+            ))
+        })
+    }
+
+    /// Draws the mechanism at the start of a motion, as SVG.
+    fn draw(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        width: Option<u32>,
+        transparent: bool,
+        contents: Contents,
+    ) -> Result<String, Failure> {
+        let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let columns = self.all_columns().iter();
+            let columns: Vec<Output> = columns
+                .filter(|c| forces && c.is_force())
+                .cloned()
+                .collect();
+            if forces && columns.is_empty() {
+                let message = "forces: the mechanism has no forces; \
+                               give bodies a `mass` or add `[forces]`";
+                return Err(Failure::Usage(message.to_owned()));
+            }
+            let mut runner = Runner::new(&scenario, &columns)?;
+            runner.start(&self.in_force(parameters)?)?;
+            let driver = driver.map(|name| self.driver_named(&name)).transpose()?;
+            let followed = driver.map(|driver| Followed {
+                driver,
+                bounds: [None; 2],
+            });
+            let Motion {
+                solver, solution, ..
+            } = &mut runner.motion;
+            let places = ForcePlace::sought(solver, solution);
+            let values = ForcePlace::values(&places, solver, solution);
+            let diagram = Diagram {
+                traces,
+                followed,
+                poses,
+                dimensions,
+                instant_centres,
+                forces: places.into_iter().zip(values).collect(),
+            };
+            let sheet = diagram.sheet(&mut runner.motion.solver)?;
+            let width = width.unwrap_or(sheet.width());
+            Ok(svg::write(&sheet, width, transparent))
+        })
+    }
+
+    /// Returns the text of the file with these parameters, the start values of a motion, and its
+    /// pose there as estimates; with `estimates`, which are by body, the text with those alone.
+    fn edited(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        estimates: Option<Vec<f64>>,
+    ) -> Result<String, Failure> {
+        py.detach(|| {
+            let names: Vec<String> = parameters.iter().map(|(name, _)| name.clone()).collect();
+            let scenario = self.scenario(motions)?;
+            let mut pose = scenario.home.0.clone();
+            match estimates {
+                Some(q) => pose.q[..q.len()].copy_from_slice(&q),
+                None => {
+                    let mut runner = Runner::new(&scenario, &[])?;
+                    let values = self.in_force(parameters)?;
+                    runner.start(&values)?;
+                    pose = runner.motion.solver.pose().clone();
+                }
+            }
+            self.text_at(&names, &pose)
+        })
+    }
+
+    /// Returns the bytes of the FMU.
+    fn fmu(
+        &self,
+        py: Python<'_>,
+        fmi: &str,
+        terminals: bool,
+        runtime: Option<PathBuf>,
+        platforms: Vec<String>,
+    ) -> Result<Vec<u8>, Failure> {
+        let platforms: Vec<&str> = platforms.iter().map(String::as_str).collect();
+        py.detach(|| {
+            cli::archive(
+                &self.source,
+                &self.model,
+                fmi,
+                terminals,
+                runtime.as_deref(),
+                &platforms,
+            )
+        })
+        .map_err(Failure::File)
+    }
+}
+
+impl Mechanism {
+    fn driver_named(&self, name: &str) -> Result<DriverId, Failure> {
+        self.model.driver_id(name).ok_or_else(|| {
+            let names = self.model.drivers.iter().map(|d| d.name.as_str());
+            let names: Vec<&str> = names.collect();
+            Failure::Usage(cli::unknown_name("driver", name, &names))
+        })
+    }
+
+    fn scenario(&self, (times, drives): Motions) -> Result<Scenario, Failure> {
+        Scenario::new(&self.model, &self.home()?, times, drives)
+    }
+
+    /// Returns all parameters in force for values of some.
+    fn in_force(&self, set: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
+        parameters(&self.model, set)
+    }
+
+    /// Returns the pose of the file's own values.
+    fn home(&self) -> Result<Arc<Home>, Failure> {
+        if let Some(home) = self.home.get() {
+            return Ok(Arc::clone(home));
+        }
+        let solver = Solver::assembled(self.model.clone(), &Path::new(&self.model));
+        let solver = solver.map_err(|error| offer_start(error, &self.model))?;
+        let mut choices = SolverChoices::default();
+        solver.copy_choices(&mut choices);
+        let home = Arc::new((solver.pose().clone(), choices));
+        Ok(Arc::clone(self.home.get_or_init(|| home)))
+    }
+
+    /// Returns the text of the file with parameters, start values and estimates of a pose.
+    fn text_at(&self, parameters: &[String], pose: &Pose) -> Result<String, Failure> {
+        edit(
+            self.source.text(),
+            &self.model,
+            parameters,
+            (pose, |_| None),
+            Place::Whole,
+        )
+        .map_err(|error| Failure::File(error.to_string()))
+    }
+
+    /// Returns the direction in which a parameter grows, or the start of a freedom.
+    fn direction(&self, name: &str) -> Result<Direction, Failure> {
+        let mut starts = self.model.starts_of_freedoms().into_iter();
+        let Some((_, freedom, order)) = starts.find(|(start, ..)| start == name) else {
+            return Ok(Direction::by_parameter(&self.model, self.free(name)?));
+        };
+        let mut direction = Direction::zero(&self.model);
+        let change = &mut direction.drivers[freedom.index()];
+        match order {
+            Order::Position => change.value = 1.0,
+            _ => change.derivatives[0] = 1.0,
+        }
+        Ok(direction)
+    }
+
+    /// Returns a parameter that does not follow from others.
+    fn free(&self, name: &str) -> Result<ParameterId, Failure> {
+        let id = parameter(&self.model, name)?;
+        let default = self.model.parameters[id.index()].default;
+        cli::check_parameter(&self.model, id, default)
+            .map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
+        Ok(id)
+    }
+
+    /// Returns the columns of a run; reactions that are indeterminate take an assembly to find.
+    fn all_columns(&self) -> &[Output] {
+        self.columns.get_or_init(|| Output::all(&self.model))
+    }
+
+    fn chosen(&self, indices: &[usize]) -> Vec<Output> {
+        let columns = self.all_columns();
+        indices
+            .iter()
+            .map(|index| columns[*index].clone())
+            .collect()
+    }
+}
+
+fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Source, Failure> {
+    match (text, path) {
+        (Some(text), None) => Ok(Source::new(name, text)),
+        // The tables that the text names are beside the file.
+        (Some(text), Some(path)) => {
+            let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+            Ok(Source::new(name, text).in_folder(folder))
+        }
+        (None, Some(path)) => Source::open(name, &path)
+            .map_err(|error| Failure::File(format!("cannot read `{name}`: {error}"))),
+        (None, None) => Err(Failure::Usage("expected a text or a path".to_owned())),
+    }
+}

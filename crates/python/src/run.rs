@@ -1,0 +1,107 @@
+//! One motion of a mechanism, with its gradients.
+
+use std::sync::Arc;
+
+use biela::kinematics::{Direction, Output};
+use biela::mechanism::Mechanism;
+use biela_tools::drawing::ForcePlace;
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+
+use crate::error::Failure;
+use crate::film::Film;
+use crate::runner::Runner;
+use crate::scenario::Scenario;
+
+/// The rows of a run.
+#[pyclass(frozen)]
+pub(crate) struct Run {
+    mechanism: Arc<Mechanism>,
+    /// Values by row, then by column.
+    values: Vec<f64>,
+    /// Derivatives by row, then by direction, then by column.
+    gradient: Vec<f64>,
+    film: Film,
+    /// Number of rows that were reached.
+    #[pyo3(get)]
+    rows: usize,
+    /// Cause of a stop before the last row.
+    #[pyo3(get)]
+    stop: Option<String>,
+    /// Warnings about samples in whole angles, then the notices of the motion, as `biela run` tells them.
+    #[pyo3(get)]
+    notices: Vec<String>,
+}
+
+#[pymethods]
+impl Run {
+    /// Returns the values, by row, then by column.
+    fn values<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.values.clone().into_pyarray(py)
+    }
+
+    /// Returns the derivatives, by row, then by direction, then by column.
+    fn gradient<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.gradient.clone().into_pyarray(py)
+    }
+
+    /// Returns whether the run has forces that arrows can show.
+    #[getter]
+    fn has_forces(&self) -> bool {
+        self.film.has_forces()
+    }
+
+    /// Returns the page on which the mechanism moves; `None` for a run without rows.
+    fn page(&self, py: Python<'_>, forces: bool) -> Option<String> {
+        py.detach(|| self.film.page(&self.mechanism, forces))
+    }
+}
+
+/// Runs a mechanism; records the columns, and their derivatives along the directions. The film tells
+/// the columns `told`.
+///
+/// # Errors
+///
+/// The start cannot be reached from the file's own pose.
+pub(crate) fn run(
+    scenario: &Scenario,
+    parameters: &[f64],
+    columns: &[Output],
+    by: &[Direction],
+    told: Vec<Output>,
+) -> Result<Run, Failure> {
+    let mut runner = Runner::along(scenario, columns, by)?;
+    let rows = scenario.times.len();
+    runner.start(parameters)?;
+    let arrows = ForcePlace::sought(&mut runner.motion.solver, &runner.motion.solution);
+    runner.watch_contacts()?;
+    let mut result = Run {
+        mechanism: scenario.driven.clone(),
+        values: Vec::with_capacity(rows * columns.len()),
+        gradient: Vec::with_capacity(rows * columns.len() * by.len()),
+        film: Film::new(told, arrows, rows, parameters),
+        rows: 0,
+        stop: None,
+        notices: scenario.whole_angles(),
+    };
+    result.notices.extend(runner.notices());
+    for row in 0..rows {
+        if row > 0 {
+            let advanced = runner.advance(row);
+            result.notices.extend(runner.notices());
+            if let Err(stop) = advanced {
+                result.stop = Some(stop);
+                break;
+            }
+        }
+        let values = columns.iter().map(|column| runner.value(column));
+        result.values.extend(values);
+        if !by.is_empty() {
+            let directions = runner.directions(by)?;
+            runner.differentiate(columns, &directions, &mut result.gradient)?;
+        }
+        result.film.add(row, &runner.motion);
+        result.rows += 1;
+    }
+    Ok(result)
+}

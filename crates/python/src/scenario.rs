@@ -1,0 +1,277 @@
+//! Parameters and motions of drivers as a call sets them.
+
+use std::sync::Arc;
+
+use biela::kinematics::{Pose, SolverChoices};
+use biela::mechanism::{
+    DriverId, DriverSource, Expression, Jet, Mechanism, Motion, Order, ParameterId, Variable,
+    whole_angles,
+};
+use biela_tools::cli::{check_parameter, parameter_value, unknown_name};
+use pyo3::prelude::*;
+
+use crate::error::Failure;
+
+/// A value of a parameter: a number in the SI unit, or an expression such as `120*mm`.
+#[derive(FromPyObject)]
+pub(crate) enum Value {
+    Number(f64),
+    Text(String),
+}
+
+/// A motion of a driver: an expression in t, or position, velocity and acceleration at each time.
+#[derive(FromPyObject)]
+pub(crate) enum Drive {
+    Text(String),
+    Samples([Vec<f64>; 3]),
+}
+
+/// Values of a driver at the times of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Samples {
+    pub(crate) driver: DriverId,
+    orders: [Vec<f64>; 3],
+}
+
+impl Samples {
+    /// Returns value, velocity and acceleration at a time, by its index.
+    pub(crate) fn at(&self, row: usize) -> Jet {
+        let [position, velocity, acceleration] = &self.orders;
+        Jet::new(position[row], [velocity[row], acceleration[row]])
+    }
+
+    /// Sets the value at a time, by its index.
+    pub(crate) fn set(&mut self, row: usize, value: f64) {
+        self.orders[0][row] = value;
+    }
+}
+
+/// The pose of the file's own values, with the solver's choices there.
+pub(crate) type Home = (Pose, SolverChoices);
+
+/// A mechanism with the motions of its drivers.
+#[derive(Clone, Debug)]
+pub(crate) struct Scenario {
+    /// The mechanism as its file has it.
+    pub(crate) own: Arc<Mechanism>,
+    /// The mechanism with the motions of the call; drivers that follow samples are inputs.
+    pub(crate) driven: Arc<Mechanism>,
+    pub(crate) home: Arc<Home>,
+    /// Times of the rows \[s\], ascending; at least one.
+    pub(crate) times: Vec<f64>,
+    pub(crate) samples: Vec<Samples>,
+    /// Sizes of inputs of forces at the times, by their places.
+    pub(crate) loads: Vec<(usize, Vec<f64>)>,
+}
+
+/// Value or velocity of a freedom at the start \[SI\].
+pub(crate) type Start = (DriverId, Order, f64);
+
+impl Scenario {
+    /// Returns warnings of angles that look like degrees.
+    pub(crate) fn whole_angles(&self) -> Vec<String> {
+        let samples = self.samples.iter().filter_map(|samples| {
+            let driver = &self.own.drivers[samples.driver.index()];
+            let is_angle = driver.coordinate.kind.is_angle();
+            let message = whole_angles(&samples.orders[0]).filter(|_| is_angle)?;
+            Some(format!(
+                "drive: `{}`: {message}; NumPy has `np.radians`",
+                driver.name
+            ))
+        });
+        samples.collect()
+    }
+
+    /// Lets freedoms begin elsewhere, or with other velocities, than the file says.
+    pub(crate) fn set_starts(&mut self, starts: &[Start]) {
+        for &(freedom, order, value) in starts {
+            Arc::make_mut(&mut self.driven).set_start(freedom, order, value);
+        }
+    }
+
+    /// Applies motions to a mechanism.
+    ///
+    /// # Errors
+    ///
+    /// A driver or an expression is unknown, or an array does not fit the times.
+    pub(crate) fn new(
+        own: &Arc<Mechanism>,
+        home: &Arc<Home>,
+        times: Vec<f64>,
+        drives: Vec<(String, Drive)>,
+    ) -> Result<Self, Failure> {
+        check_times(&times)?;
+        let mut driven = Mechanism::clone(own);
+        let mut samples = Vec::new();
+        let mut loads: Vec<(String, Vec<f64>)> = Vec::new();
+        let inputs = own.force_inputs();
+        for (name, drive) in drives {
+            if let Some(place) = inputs.iter().position(|input| input.name == name) {
+                let input = &inputs[place];
+                match drive {
+                    Drive::Text(text) => {
+                        let size = expression(own, &text)?;
+                        let load = &mut driven.forces[input.force].load;
+                        load.set_component(input.component, size);
+                    }
+                    Drive::Samples(orders) => {
+                        check_samples(&name, &orders, times.len())?;
+                        let [sizes, ..] = orders;
+                        loads.push((name, sizes));
+                    }
+                }
+                continue;
+            }
+            let Some(driver) = own.driver_id(&name) else {
+                let names = own.drivers.iter().map(|d| d.name.as_str());
+                let names = names.chain(inputs.iter().map(|input| input.name.as_str()));
+                let names: Vec<&str> = names.collect();
+                return Err(Failure::Usage(format!(
+                    "drive: {}",
+                    unknown_name("driver", &name, &names)
+                )));
+            };
+            driven.drivers[driver.index()].source = match drive {
+                Drive::Text(text) => {
+                    DriverSource::Motion(Motion::Expression(expression(own, &text)?))
+                }
+                Drive::Samples(orders) => {
+                    check_samples(&name, &orders, times.len())?;
+                    let start = orders[0][0];
+                    samples.push(Samples { driver, orders });
+                    DriverSource::Input { start }
+                }
+            };
+        }
+        Ok(Self {
+            own: Arc::clone(own),
+            home: Arc::clone(home),
+            times,
+            samples,
+            loads: places(&driven, loads),
+            driven: Arc::new(driven),
+        })
+    }
+}
+
+/// Returns the sizes of inputs of forces by their places among those of the driven mechanism.
+fn places(driven: &Mechanism, loads: Vec<(String, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
+    let inputs = driven.force_inputs();
+    let placed = loads.into_iter().filter_map(|(name, sizes)| {
+        let place = inputs.iter().position(|input| input.name == name)?;
+        Some((place, sizes))
+    });
+    placed.collect()
+}
+
+/// Returns an expression in t and the parameters.
+fn expression(own: &Mechanism, text: &str) -> Result<Expression, Failure> {
+    let parsed = own.parse_expression(text, Some(Variable::Time));
+    parsed.map_err(|error| Failure::Usage(format!("drive: {}\n  {text}", error.message)))
+}
+
+/// Takes the starts of freedoms out of values that are set by name \[SI\].
+///
+/// # Errors
+///
+/// An expression is none, or its value is not finite.
+pub(crate) fn take_starts(
+    own: &Mechanism,
+    set: &mut Vec<(String, Value)>,
+) -> Result<Vec<Start>, Failure> {
+    let known = own.starts_of_freedoms();
+    let refuse = |name: &str, why: String| Failure::Usage(format!("parameters: `{name}`: {why}"));
+    let mut starts = Vec::new();
+    for (name, freedom, order) in known {
+        let Some(place) = set.iter().position(|(given, _)| *given == name) else {
+            continue;
+        };
+        let value = match set.remove(place).1 {
+            Value::Number(value) => value,
+            Value::Text(text) => own
+                .parse_expression(&text, None)
+                .map_err(|error| refuse(&name, error.message))?
+                .value(&own.default_parameters()),
+        };
+        if !value.is_finite() {
+            return Err(refuse(&name, format!("{value} is not finite")));
+        }
+        starts.push((freedom, order, value));
+    }
+    Ok(starts)
+}
+
+/// Returns all parameters in force for values of some \[SI\].
+///
+/// # Errors
+///
+/// A parameter is unknown or derived, or its value is beyond its limits.
+pub(crate) fn parameters(own: &Mechanism, set: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
+    let mut values = own.default_parameters();
+    for (name, value) in set {
+        let id = parameter(own, &name)?;
+        let value = match value {
+            Value::Number(value) => check_parameter(own, id, value).map(|()| value),
+            Value::Text(text) => parameter_value(own, id, &text),
+        };
+        values[id.index()] =
+            value.map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
+    }
+    own.derive_parameters(&mut values);
+    Ok(values)
+}
+
+/// Returns the parameter of a name.
+pub(crate) fn parameter(mechanism: &Mechanism, name: &str) -> Result<ParameterId, Failure> {
+    mechanism.parameter_id(name).ok_or_else(|| {
+        let names: Vec<&str> = mechanism
+            .parameters
+            .iter()
+            .map(|p| p.name.as_str())
+            .collect();
+        Failure::Usage(format!(
+            "parameters: {}",
+            unknown_name("parameter", name, &names)
+        ))
+    })
+}
+
+fn check_times(times: &[f64]) -> Result<(), Failure> {
+    let refuse = |message: String| Err(Failure::Usage(message));
+    if times.is_empty() {
+        return refuse("t: there are no times".to_owned());
+    }
+    if let Some(row) = times.iter().position(|time| !time.is_finite()) {
+        return refuse(format!(
+            "t[{row}] is {}; expected a finite number",
+            times[row]
+        ));
+    }
+    match times.windows(2).position(|pair| pair[1] < pair[0]) {
+        Some(row) => refuse(format!(
+            "t[{}] = {} is before t[{row}] = {}; expected times in ascending order",
+            row + 1,
+            times[row + 1],
+            times[row]
+        )),
+        None => Ok(()),
+    }
+}
+
+fn check_samples(name: &str, orders: &[Vec<f64>; 3], rows: usize) -> Result<(), Failure> {
+    for values in orders {
+        let count = values.len();
+        if count != rows {
+            return Err(Failure::Usage(format!(
+                "drive: `{name}` has {count} values for {rows} times"
+            )));
+        }
+        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            return Err(Failure::Usage(format!(
+                "drive: `{name}` is {} at t[{row}]; expected a finite number",
+                values[row]
+            )));
+        }
+    }
+    Ok(())
+}

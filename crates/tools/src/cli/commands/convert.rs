@@ -1,0 +1,92 @@
+//! `biela convert`
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::conditions::Conditions;
+use crate::cli::error::Error;
+use crate::cli::input::Input;
+use crate::cli::input_files::InputFiles;
+use crate::cli::message::Message;
+use crate::cli::output::{tell_written, write};
+use crate::cli::stdout::STDOUT;
+use crate::exchange::{
+    self, AssemblyFile, Note, Pins, linkage_document, pmks_link, pylinkage_json,
+};
+use biela::kinematics::Solver;
+
+/// Write a mechanism for another program: as a link that opens in PMKS+, JSON of pylinkage, a document
+/// of Linkage, or an assembly of OndselSolver and FreeCAD.
+///
+/// Bodies are links through their pins at the start; rods, slides and slots on ground and points of
+/// interest come over, and the drivers that turn links about pins on ground. An assembly has welds,
+/// slots on moving bodies, gears, belts and racks too, and motions over time. A mechanism with other
+/// joints is refused. For CAD and the workshop there is `biela draw -o x.dxf`, for systems of FMUs
+/// `biela export --ssp`; `biela import` is the other way.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:\n  \
+        biela convert four_bar.toml --to pmks\n  \
+        biela convert four_bar.toml --to pylinkage -o four_bar.json\n  \
+        biela convert four_bar.toml --to linkage -o four_bar.linkage2\n  \
+        biela convert four_bar.toml --to asmt --drive 'crank_angle=60*deg + 30*rpm*t' -o four_bar.asmt")]
+pub(in crate::cli) struct Convert {
+    /// The mechanism file.
+    file: PathBuf,
+    /// The program.
+    #[arg(long, value_enum)]
+    to: Program,
+    /// The file to write [default: stdout].
+    #[arg(short, long, value_name = "FILE", default_value = STDOUT, hide_default_value = true)]
+    output: PathBuf,
+    #[command(flatten)]
+    conditions: Conditions,
+}
+
+/// Programs for linkages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Program {
+    /// A link of PMKS+, in centimetres, to ten micrometres.
+    Pmks,
+    /// JSON of pylinkage, in metres.
+    Pylinkage,
+    /// A document of Linkage (.linkage2), in millimetres.
+    Linkage,
+    /// An assembly of OndselSolver and FreeCAD (.asmt), in metres.
+    Asmt,
+}
+
+impl Program {
+    /// Returns the file for the program, with remarks.
+    fn file(self, solver: &Solver) -> Result<(String, Vec<Note>), exchange::Error> {
+        if let Self::Asmt = self {
+            let assembly = AssemblyFile::new(solver)?;
+            return Ok((assembly.text, assembly.notes));
+        }
+        let pins = Pins::new(solver)?;
+        let text = match self {
+            Self::Pmks => pmks_link(&pins) + "\n",
+            Self::Pylinkage => pylinkage_json(&pins),
+            _ => linkage_document(&pins),
+        };
+        Ok((text, pins.notes))
+    }
+}
+
+impl Convert {
+    pub(in crate::cli) fn run(self) -> Result<(), Error> {
+        let input = Input::read(&self.file)?;
+        InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&self.output)])?;
+        let solver = self.conditions.solver_at_start(&input)?;
+        let (text, notes) = self.to.file(&solver).map_err(|error| Error::Import {
+            file: input.source.name().to_owned(),
+            error,
+        })?;
+        for note in &notes {
+            Message::Note(note.to_string()).show();
+        }
+        write(&self.output, text.as_bytes())?;
+        tell_written(&self.output);
+        Ok(())
+    }
+}

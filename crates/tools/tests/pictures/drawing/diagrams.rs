@@ -1,0 +1,193 @@
+//! Poses, dimensions and instant centres on demand.
+
+use biela_tools::drawing::{Diagram, svg};
+
+use crate::common::{assembled, parse, shipped, stems};
+use crate::drawing::pictures::{Label, WIDTH, check_apart, check_picture};
+
+fn draw(name: &str, diagram: &Diagram) -> String {
+    let (mut solver, _) = assembled(&shipped(name));
+    let home = solver.pose().clone();
+    let sheet = diagram.sheet(&mut solver).expect("it can be drawn");
+    assert_eq!(*solver.pose(), home, "the solver is back where it was");
+    svg::write(&sheet, WIDTH, false)
+}
+
+/// Returns the number of paths in a group of a picture.
+fn paths(picture: &str, class: &str) -> usize {
+    let group = picture.split(&format!("<g class=\"{class}\"")).nth(1);
+    let group = group.map(|rest| rest.split("</g>").next().expect("it is closed"));
+    group.map_or(0, |group| group.matches("<path").count())
+}
+
+fn has(labels: &[Label], text: &str) -> bool {
+    labels.iter().any(|label| label.text == text)
+}
+
+#[test]
+fn a_picture_has_as_many_faint_poses_as_asked_for() {
+    let with_poses = |poses| Diagram {
+        poses,
+        ..Diagram::default()
+    };
+    // Each of the three bars of a four-bar, at each pose.
+    let picture = draw("four_bar", &with_poses(8));
+    assert_eq!(paths(&picture, "poses"), 3 * 8);
+    assert_eq!(paths(&picture, "traces"), 1);
+    assert_eq!(
+        paths(&picture, "ground"),
+        paths(&draw("four_bar", &with_poses(0)), "ground")
+    );
+    check_apart("four_bar", &check_picture("four_bar", &picture));
+    assert_eq!(
+        draw("four_bar", &with_poses(0)),
+        draw("four_bar", &Diagram::default())
+    );
+}
+
+#[test]
+fn each_mechanism_moves_in_its_picture() {
+    let diagram = Diagram {
+        traces: false,
+        poses: 3,
+        instant_centres: true,
+        ..Diagram::default()
+    };
+    for name in stems("mechanisms", "toml") {
+        let picture = draw(&name, &diagram);
+        check_picture(&name, &picture);
+        // One of the three may be the pose that is drawn.
+        assert!(paths(&picture, "poses") >= 2, "{name}");
+    }
+}
+
+#[test]
+fn dimensions_tell_the_lengths_of_the_file_and_keep_apart() {
+    let diagram = Diagram {
+        traces: false,
+        dimensions: true,
+        ..Diagram::default()
+    };
+    let labels = check_picture("four_bar", &draw("four_bar", &diagram));
+    // The parameters of the file; the coupler's point is at half its length, 50 mm aside.
+    let aside = format!("{:.2}", 125.0_f64.hypot(50.0));
+    for text in [
+        "100",
+        "250",
+        "300",
+        "400",
+        &aside,
+        "lengths in mm",
+        "O2",
+        "A",
+        "B",
+        "O4",
+        "P",
+    ] {
+        assert!(has(&labels, text), "{text}");
+    }
+    for name in stems("mechanisms", "toml") {
+        let labels = check_picture(&name, &draw(&name, &diagram));
+        check_apart(&name, &labels);
+    }
+    // The offset of a guide from the crank's pivot; a guide through the pivot has none.
+    for (name, text, is_told) in [
+        ("slider_crank", "10", true),
+        ("engine", "0", false),
+        ("slotted_lever", "0", false),
+    ] {
+        let labels = check_picture(name, &draw(name, &diagram));
+        assert_eq!(has(&labels, text), is_told, "{name}");
+    }
+    // Long names of joints give way to letters, with a key; P and Q are points of interest.
+    let labels = check_picture("excavator_arm", &draw("excavator_arm", &diagram));
+    for text in ["A", "B", "lengths in m"] {
+        assert!(has(&labels, text), "{text}");
+    }
+    assert!(
+        labels
+            .iter()
+            .any(|label| label.text.starts_with("A: boom_foot; B: stick_pin"))
+    );
+}
+
+#[test]
+fn instant_centres_far_away_are_told_in_words() {
+    let diagram = Diagram {
+        instant_centres: true,
+        ..Diagram::default()
+    };
+    let labels = |name: &str| check_picture(name, &draw(name, &diagram));
+    let slider_crank = labels("slider_crank");
+    for text in [
+        "I crank",
+        "I connecting_rod",
+        "instant centre at infinity (translation): slider",
+    ] {
+        assert!(has(&slider_crank, text), "{text}");
+    }
+    let robot = labels("five_bar_robot");
+    for text in [
+        "instant centres while left_angle moves alone",
+        "at rest: right_arm",
+    ] {
+        assert!(has(&robot, text), "{text}");
+    }
+    // The bar of a parallelogram translates until its cranks differ a little: its centre is then
+    // where the lines of the cranks meet, far outside the picture.
+    let text = "format = 1\nname = 'nearly'\n[ground.markers]\nA = [0, 0]\nD = [0.2, 0]\n\
+        [bodies.a]\nmarkers = { O = [0, 0], P = [0.1, 0] }\nestimate = [0, 0, 1]\n\
+        [bodies.b]\nmarkers = { O = [0, 0], P = [0.1001, 0] }\nestimate = [0.2, 0, 1]\n\
+        [bodies.bar]\nmarkers = { P = [0, 0], Q = [0.2, 0] }\nestimate = [0.05, 0.08, 0]\n\
+        [joints]\nA = { type = 'revolute', markers = ['ground.A', 'a.O'] }\n\
+        D = { type = 'revolute', markers = ['ground.D', 'b.O'] }\n\
+        B = { type = 'revolute', markers = ['a.P', 'bar.P'] }\n\
+        C = { type = 'revolute', markers = ['b.P', 'bar.Q'] }\n\
+        [drivers]\nturn = { coordinate = 'angle', markers = ['ground.A', 'a.O'], start = 1 }\n";
+    let (mut solver, _) = assembled(&parse(text));
+    let sheet = diagram.sheet(&mut solver).expect("it moves");
+    let labels = check_picture("nearly", &svg::write(&sheet, WIDTH, false));
+    let told = |label: &Label| {
+        label
+            .text
+            .starts_with("instant centre of bar outside the picture, at (")
+    };
+    assert!(labels.iter().any(told));
+}
+
+// The mechanism names no unit: lengths are in metres, and so is the scale, which is in millimetres
+// without them.
+#[test]
+fn the_scale_has_the_unit_of_the_dimensions() {
+    let text = r#"format = 1
+name = "arm"
+[ground.markers]
+O = [0, 0]
+[bodies.arm]
+markers = { O = [0, 0], P = [0.5, 0] }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+[drivers]
+angle = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0.3 }
+[outputs]
+markers = ["arm.P"]
+"#;
+    let texts = |dimensions: bool| {
+        let diagram = Diagram {
+            dimensions,
+            ..Diagram::default()
+        };
+        let (mut solver, _) = assembled(&parse(text));
+        svg::write(
+            &diagram.sheet(&mut solver).expect("it is drawn"),
+            640,
+            false,
+        )
+    };
+    let with = texts(true);
+    assert!(
+        with.contains(">lengths in m<") && with.contains(">0.2 m<"),
+        "{with}"
+    );
+    assert!(texts(false).contains(">200 mm<"));
+}

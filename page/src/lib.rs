@@ -1,5 +1,0 @@
-//! `biela::page` for a browser.
-
-mod abi;
-
-use biela::page::Host;
