@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::conditions::Conditions;
-use super::error::Error;
-use super::input::Input;
-use super::message::Message;
+use super::given::conditions::Conditions;
+use super::given::input::Input;
+use super::given::signals::Signals;
 use super::motion::release;
-use super::signals::Signals;
+use super::told::error::Error;
+use super::told::message::Message;
 use biela::dynamics::{self, Equilibrium, FreeMotion, Motion, Notice, StateSpace};
 use biela::kinematics::{Output, Solver};
 use biela::mechanism::CoordinateKind;

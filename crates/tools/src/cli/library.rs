@@ -9,11 +9,13 @@ use serde_json::Value;
 use super::commands::check::json::report_on;
 use super::commands::export::{pack, platform, version};
 use super::commands::range;
-use super::conditions::check_limits;
-use super::documentation::show;
-use super::form::Form;
-use super::input::Input;
-use super::{conditions, page_solver, runtime};
+use super::given::conditions;
+use super::given::conditions::check_limits;
+use super::given::input::Input;
+use super::pages::documentation::show;
+use super::pages::page_solver;
+use super::results::form::Form;
+use super::runtime;
 use crate::drawing::animation::moving_gif;
 use biela::fmi::{Platform, RuntimeLibrary};
 use biela::kinematics::End;
@@ -49,7 +51,7 @@ pub fn archive(
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         Ok((libraries, page_solver::find(page_solver::Solver::Page)?))
     };
-    let (libraries, page) = find().map_err(|error: super::error::Error| error.to_string())?;
+    let (libraries, page) = find().map_err(|error: super::told::error::Error| error.to_string())?;
     archive_of(source, mechanism, form, &libraries, page.as_deref())
 }
 

@@ -1,41 +1,30 @@
-//! The command line: one file per command in `commands`, and what they share.
+//! The command line.
 //!
 //! Results go to stdout, messages to stderr. The exit status is 0 for success, 1 for an error in
-//! the mechanism, 2 for an error in the command. Some commands are also functions, for programs
-//! without a command line.
+//! the mechanism, 2 for an error in the command.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `commands` | one file per command |
+//! | `given` | mechanism, values and times as the user gives them |
+//! | `motion`, `free` | a mechanism that moves through the rows of a run, or comes to rest |
+//! | `results` | rows, charts, films and files |
+//! | `pages` | pages for a browser, and their server |
+//! | `told` | messages, errors, progress |
+//! | `runtime` | the libraries that go into an FMU |
+//! | `render` | a diagnostic beside the lines of its file |
+//! | `library` | commands as functions, for programs without a command line |
 
-mod bounds;
-mod column;
 mod commands;
-mod conditions;
-mod csv;
-mod documentation;
-mod error;
-mod film;
-mod form;
 mod free;
-mod input;
-mod input_files;
+mod given;
 mod library;
-mod live;
-mod message;
 mod motion;
-mod new_file;
-mod output;
-mod page_solver;
-mod picture;
-mod plot;
-mod progress;
-mod recorder;
+mod pages;
 pub mod render;
+mod results;
 mod runtime;
-mod server;
-mod signals;
-mod stdout;
-mod studio_page;
-mod suggested_estimates;
-mod times;
-mod xlsx;
+mod told;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

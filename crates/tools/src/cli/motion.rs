@@ -1,8 +1,8 @@
 //! A mechanism that moves along the motions and signals of its drivers.
 
-use super::conditions::Scenario;
-use super::message::Message;
-use super::signals::Signals;
+use super::given::conditions::Scenario;
+use super::given::signals::Signals;
+use super::told::message::Message;
 use biela::dynamics::{self, Motion, Notice};
 use biela::kinematics::{Curve, Error, Path, Solver};
 use biela::mechanism::{DriverId, show_time};

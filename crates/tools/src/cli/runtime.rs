@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use super::error::Error;
+use super::told::error::Error;
 use biela::fmi::{Platform, RuntimeLibrary};
 
 include!(concat!(env!("OUT_DIR"), "/embedded_libraries.rs"));

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::check::{estimates, with_unit};
-use crate::cli::conditions::Conditions;
-use crate::cli::error::Error;
 use crate::cli::free::AtRest;
-use crate::cli::output::print;
+use crate::cli::given::conditions::Conditions;
+use crate::cli::results::output::print;
+use crate::cli::told::error::Error;
 use biela::dynamics::Equilibrium;
 use biela::mechanism::Mechanism;
 

@@ -11,14 +11,14 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 use forces::Forces;
 
-use crate::cli::error::Error;
 use crate::cli::free::AtRest;
-use crate::cli::input::{Input, warn_of_misfits};
-use crate::cli::message::Message;
-use crate::cli::output::print;
-use crate::cli::signals::Signals;
-use crate::cli::suggested_estimates::as_estimates;
-use crate::cli::times::Times;
+use crate::cli::given::input::{Input, warn_of_misfits};
+use crate::cli::given::signals::Signals;
+use crate::cli::given::times::Times;
+use crate::cli::results::output::print;
+use crate::cli::told::error::Error;
+use crate::cli::told::message::Message;
+use crate::cli::told::suggested_estimates::as_estimates;
 use biela::kinematics::{
     self, Mode, Modes, Origin, Path, Play, Rates, Solver, System, offer_start,
 };

@@ -3,8 +3,8 @@
 use clap::Args;
 use clap_complete::Shell;
 
-use crate::cli::error::Error;
-use crate::cli::output::print;
+use crate::cli::results::output::print;
+use crate::cli::told::error::Error;
 
 /// Print a script with which a shell completes the arguments of biela.
 #[derive(Args, Debug)]

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::cli::conditions::Conditions;
-use crate::cli::error::Error;
-use crate::cli::input::Input;
-use crate::cli::input_files::InputFiles;
-use crate::cli::message::Message;
-use crate::cli::output::{tell_written, write};
-use crate::cli::stdout::STDOUT;
+use crate::cli::given::conditions::Conditions;
+use crate::cli::given::input::Input;
+use crate::cli::given::input_files::InputFiles;
+use crate::cli::results::output::{tell_written, write};
+use crate::cli::results::stdout::STDOUT;
+use crate::cli::told::error::Error;
+use crate::cli::told::message::Message;
 use crate::exchange::{
     self, AssemblyFile, Note, Pins, linkage_document, pmks_link, pylinkage_json,
 };

@@ -6,16 +6,16 @@ use std::time::{Duration, SystemTime};
 
 use clap::Args;
 
-use crate::cli::documentation;
-use crate::cli::error::Error;
-use crate::cli::form::Form;
-use crate::cli::input::{Input, warn_of_misfits};
-use crate::cli::input_files::InputFiles;
-use crate::cli::message::{Message, tell};
-use crate::cli::output::write;
-use crate::cli::page_solver;
+use crate::cli::given::input::{Input, warn_of_misfits};
+use crate::cli::given::input_files::InputFiles;
+use crate::cli::pages::documentation;
+use crate::cli::pages::page_solver;
+use crate::cli::results::form::Form;
+use crate::cli::results::output::write;
+use crate::cli::results::stdout::is_stdout;
 use crate::cli::runtime::{self, FoundLibrary};
-use crate::cli::stdout::is_stdout;
+use crate::cli::told::error::Error;
+use crate::cli::told::message::{Message, tell};
 use crate::exchange::write_ssp;
 use biela::dynamics::KeptStart;
 use biela::fmi::{Platform, RuntimeLibrary, Version, describe, variables, write_fmu};

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::cli::error::Error;
-use crate::cli::input_files::InputFiles;
-use crate::cli::message::{Message, tell};
-use crate::cli::new_file::{create, exists, tell_now_check};
-use crate::cli::output::write;
-use crate::cli::picture::extension;
+use crate::cli::given::input_files::InputFiles;
 use crate::cli::render::render;
-use crate::cli::stdout::is_stdout;
+use crate::cli::results::new_file::{create, exists, tell_now_check};
+use crate::cli::results::output::write;
+use crate::cli::results::picture::extension;
+use crate::cli::results::stdout::is_stdout;
+use crate::cli::told::error::Error;
+use crate::cli::told::message::{Message, tell};
 use crate::exchange::{Draft, Format, LengthUnit};
 use biela::mechanism::{Mechanism, Source};
 

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::cli::column::{self, Output};
-use crate::cli::conditions::Conditions;
-use crate::cli::error::Error;
 use crate::cli::free::AtRest;
-use crate::cli::message::Message;
-use crate::cli::output::write;
-use crate::cli::stdout::STDOUT;
+use crate::cli::given::conditions::Conditions;
+use crate::cli::results::column::{self, Output};
+use crate::cli::results::output::write;
+use crate::cli::results::stdout::STDOUT;
+use crate::cli::told::error::Error;
+use crate::cli::told::message::Message;
 
 /// Linearize the motion of a mechanism with freedoms at its start, or at its equilibrium.
 ///

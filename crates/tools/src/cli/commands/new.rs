@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::cli::error::Error;
-use crate::cli::new_file::{create, exists, tell_now_check};
+use crate::cli::results::new_file::{create, exists, tell_now_check};
+use crate::cli::told::error::Error;
 use biela::mechanism::{is_identifier, similar_identifier};
 
 /// Write a commented mechanism to start from.

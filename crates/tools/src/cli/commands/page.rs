@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::error::Error;
-use crate::cli::input::{Input, warn_of_misfits};
-use crate::cli::input_files::InputFiles;
-use crate::cli::live;
-use crate::cli::output::{tell_written, write};
-use crate::cli::page_solver::{self, Solver};
-use crate::cli::picture::check_page;
-use crate::cli::stdout::is_stdout;
+use crate::cli::given::input::{Input, warn_of_misfits};
+use crate::cli::given::input_files::InputFiles;
+use crate::cli::pages::live;
+use crate::cli::pages::page_solver::{self, Solver};
+use crate::cli::results::output::{tell_written, write};
+use crate::cli::results::picture::check_page;
+use crate::cli::results::stdout::is_stdout;
+use crate::cli::told::error::Error;
 
 /// Write a page on which a mechanism is moved by hand.
 ///

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::error::Error;
-use crate::cli::output::print;
+use crate::cli::results::output::print;
 use crate::cli::runtime;
+use crate::cli::told::error::Error;
 use biela::fmi::Platform;
 
 /// List the platforms that exported FMUs run on.

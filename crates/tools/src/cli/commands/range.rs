@@ -16,16 +16,16 @@ use forces::describe_largest;
 
 use super::check::scientific;
 
-use crate::cli::bounds::{Bounds, driver_named, no_driver};
-use crate::cli::conditions::Conditions;
-use crate::cli::error::Error;
-use crate::cli::input::Input;
-use crate::cli::input_files::InputFiles;
-use crate::cli::message::Message;
-use crate::cli::output::{print, tell_written, write};
-use crate::cli::picture::Format;
-use crate::cli::plot::{MOST_BODIES, axis, panel, varies};
-use crate::cli::stdout::is_stdout;
+use crate::cli::given::bounds::{Bounds, driver_named, no_driver};
+use crate::cli::given::conditions::Conditions;
+use crate::cli::given::input::Input;
+use crate::cli::given::input_files::InputFiles;
+use crate::cli::results::output::{print, tell_written, write};
+use crate::cli::results::picture::Format;
+use crate::cli::results::plot::{MOST_BODIES, axis, panel, varies};
+use crate::cli::results::stdout::is_stdout;
+use crate::cli::told::error::Error;
+use crate::cli::told::message::Message;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use biela::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample, Solver};
 use biela::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};

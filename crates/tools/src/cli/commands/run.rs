@@ -5,22 +5,22 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::column::{self, Output};
-use crate::cli::conditions::{Conditions, Scenario};
-use crate::cli::csv::Csv;
-use crate::cli::error::Error;
-use crate::cli::film::{Film, FilmFile};
-use crate::cli::input::Input;
-use crate::cli::input_files::InputFiles;
-use crate::cli::message::{Message, tell};
+use crate::cli::given::conditions::{Conditions, Scenario};
+use crate::cli::given::input::Input;
+use crate::cli::given::input_files::InputFiles;
+use crate::cli::given::times::{Span, Times};
 use crate::cli::motion::SignalledMotion;
-use crate::cli::picture::{Format, extension};
-use crate::cli::plot::Plot;
-use crate::cli::progress::Progress;
-use crate::cli::recorder::Recorder;
-use crate::cli::stdout::{STDOUT, is_stdout};
-use crate::cli::times::{Span, Times};
-use crate::cli::xlsx::{MOST_COLUMNS, MOST_ROWS, Xlsx};
+use crate::cli::results::column::{self, Output};
+use crate::cli::results::csv::Csv;
+use crate::cli::results::film::{Film, FilmFile};
+use crate::cli::results::picture::{Format, extension};
+use crate::cli::results::plot::Plot;
+use crate::cli::results::recorder::Recorder;
+use crate::cli::results::stdout::{STDOUT, is_stdout};
+use crate::cli::results::xlsx::{MOST_COLUMNS, MOST_ROWS, Xlsx};
+use crate::cli::told::error::Error;
+use crate::cli::told::message::{Message, tell};
+use crate::cli::told::progress::Progress;
 use crate::drawing::ForcePlace;
 use biela::mechanism::{Driver, DriverSource, Mechanism, rounded};
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::error::Error;
-use crate::cli::output::write;
-use crate::cli::stdout::STDOUT;
+use crate::cli::results::output::write;
+use crate::cli::results::stdout::STDOUT;
+use crate::cli::told::error::Error;
 use biela::mechanism::Mechanism;
 
 /// Print a JSON Schema (2020-12) of mechanism files; editors complete and check files with it.

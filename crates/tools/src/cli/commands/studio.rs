@@ -9,13 +9,13 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::new::templates;
-use crate::cli::error::Error;
-use crate::cli::live;
-use crate::cli::output::{print, tell_written, write};
-use crate::cli::page_solver::{self, Solver};
+use crate::cli::pages::live;
+use crate::cli::pages::page_solver::{self, Solver};
+use crate::cli::pages::server::{Answer, Listening, PAGE, Request, SCRIPT, Server, TEXT, token};
+use crate::cli::pages::studio_page::{Beginning, page, part};
+use crate::cli::results::output::{print, tell_written, write};
 use crate::cli::runtime;
-use crate::cli::server::{Answer, Listening, PAGE, Request, SCRIPT, Server, TEXT, token};
-use crate::cli::studio_page::{Beginning, page, part};
+use crate::cli::told::error::Error;
 use biela::mechanism::{Mechanism, Source, is_identifier};
 
 /// Draw a mechanism in a browser, move it, and take the FMU home.

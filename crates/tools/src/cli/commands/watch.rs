@@ -8,17 +8,17 @@ use std::time::SystemTime;
 
 use clap::Args;
 
-use crate::cli::conditions::Conditions;
-use crate::cli::documentation::show;
-use crate::cli::error::Error;
-use crate::cli::input::{Input, misfits};
-use crate::cli::input_files::tables;
-use crate::cli::live;
-use crate::cli::message::{Message, tell};
-use crate::cli::output::print;
-use crate::cli::page_solver;
+use crate::cli::given::conditions::Conditions;
+use crate::cli::given::input::{Input, misfits};
+use crate::cli::given::input_files::tables;
+use crate::cli::pages::documentation::show;
+use crate::cli::pages::live;
+use crate::cli::pages::page_solver;
+use crate::cli::pages::server::{Answer, Listening, PAGE, Request, Server, TEXT, token};
 use crate::cli::render::render;
-use crate::cli::server::{Answer, Listening, PAGE, Request, Server, TEXT, token};
+use crate::cli::results::output::print;
+use crate::cli::told::error::Error;
+use crate::cli::told::message::{Message, tell};
 use crate::drawing::animation::{fill, page_with, player};
 use crate::drawing::svg::escape;
 use biela::mechanism::Mechanism;

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 
 use super::forces::Forces;
 use super::{NEARLY_SINGULAR, equations_of_joints, excursions};
-use crate::cli::error::Error;
-use crate::cli::input::cannot_rest;
+use crate::cli::given::input::cannot_rest;
+use crate::cli::told::error::Error;
 use biela::dynamics::KeptStart;
 use biela::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System, offer_start};
 use biela::mechanism::{Diagnostic, DriverSource, Mechanism, Source};

@@ -1,0 +1,63 @@
+//! Values of a driver between which it is followed.
+
+use clap::Args;
+
+use super::conditions::{Conditions, unknown};
+use crate::cli::told::error::Error;
+use biela::mechanism::{DriverId, Mechanism, shown};
+
+/// Options of the commands that follow a driver.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct Bounds {
+    /// The value of the driver from which it is followed, such as '30*deg' or 0.4 [m or rad].
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    from: Option<String>,
+    /// The value of the driver up to which it is followed.
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    to: Option<String>,
+}
+
+impl Bounds {
+    /// Returns whether no option is given.
+    pub(in crate::cli) fn is_empty(&self) -> bool {
+        self.from.is_none() && self.to.is_none()
+    }
+
+    /// Returns the values of a driver [m or rad], none where the options are left out. Warns of
+    /// angles that look like degrees.
+    pub(in crate::cli) fn of(
+        &self,
+        conditions: &Conditions,
+        mechanism: &Mechanism,
+        driver: DriverId,
+    ) -> Result<[Option<f64>; 2], Error> {
+        let is_angle = mechanism.drivers[driver.index()].coordinate.kind.is_angle();
+        let value = |option, text: &Option<String>| {
+            let text = text.as_deref();
+            text.map(|text| conditions.value(mechanism, option, text, is_angle))
+                .transpose()
+        };
+        let bounds = [value("--from", &self.from)?, value("--to", &self.to)?];
+        match bounds {
+            [Some(from), Some(to)] if from >= to => Err(Error::Usage(format!(
+                "--from, {}, must be less than --to, {}",
+                shown(from),
+                shown(to)
+            ))),
+            _ => Ok(bounds),
+        }
+    }
+}
+
+/// Returns the error for an option or a command that needs a driver, in a mechanism without any.
+pub(in crate::cli) fn no_driver(what: &str) -> Error {
+    Error::Usage(format!("{what}: the mechanism has no driver"))
+}
+
+/// Returns the driver of this name.
+pub(in crate::cli) fn driver_named(mechanism: &Mechanism, name: &str) -> Result<DriverId, Error> {
+    mechanism.driver_id(name).ok_or_else(|| {
+        let names = mechanism.drivers.iter().map(|d| d.name.as_str());
+        unknown("--driver", "driver", name, &names.collect::<Vec<_>>())
+    })
+}

@@ -1,0 +1,17 @@
+//! Things that the user gives: the mechanism and its files, values, times.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `input` | a mechanism file, read with its diagnostics |
+//! | `input_files` | the files that a command reads, which no result overwrites |
+//! | `conditions` | parameters and motions of drivers |
+//! | `signals` | values of drivers and of inputs of forces over time |
+//! | `times` | the times of a run |
+//! | `bounds` | values of a driver between which it is followed |
+
+pub(super) mod bounds;
+pub(super) mod conditions;
+pub(super) mod input;
+pub(super) mod input_files;
+pub(super) mod signals;
+pub(super) mod times;

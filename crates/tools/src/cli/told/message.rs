@@ -1,0 +1,69 @@
+//! Messages to the user, on stderr.
+
+use std::fmt::{self, Display, Formatter};
+use std::io::Write as _;
+
+use annotate_snippets::renderer::{DEFAULT_ERROR_STYLE, DEFAULT_NOTE_STYLE, DEFAULT_WARNING_STYLE};
+
+use biela::dynamics::Notice;
+
+/// A message; its text begins with its kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::cli) enum Message {
+    Error(String),
+    Warning(String),
+    Note(String),
+}
+
+impl Message {
+    /// Writes the message to stderr, with its kind in the colour of diagnostics.
+    pub(in crate::cli) fn show(&self) {
+        let (kind, style, text) = self.parts();
+        tell(format_args!("{style}{kind}{style:#}: {text}"));
+    }
+
+    /// Returns the message with its text changed.
+    pub(in crate::cli) fn map_text(self, text: impl FnOnce(String) -> String) -> Self {
+        match self {
+            Self::Error(inner) => Self::Error(text(inner)),
+            Self::Warning(inner) => Self::Warning(text(inner)),
+            Self::Note(inner) => Self::Note(text(inner)),
+        }
+    }
+
+    /// Returns the kind, the style of the kind, and the text.
+    fn parts(&self) -> (&'static str, impl Display, &str) {
+        match self {
+            Self::Error(text) => ("error", DEFAULT_ERROR_STYLE, text),
+            Self::Warning(text) => ("warning", DEFAULT_WARNING_STYLE, text),
+            Self::Note(text) => ("note", DEFAULT_NOTE_STYLE, text),
+        }
+    }
+}
+
+impl From<Notice<'_>> for Message {
+    fn from(notice: Notice<'_>) -> Self {
+        let text = notice.to_string();
+        match notice {
+            Notice::Event(..) | Notice::Crossing(..) => Self::Note(text),
+            Notice::Overlap(..)
+            | Notice::Approach(..)
+            | Notice::Excursion(_)
+            | Notice::OffPulley(_)
+            | Notice::LiftOff(_) => Self::Warning(text),
+        }
+    }
+}
+
+impl Display for Message {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let (kind, _, text) = self.parts();
+        write!(f, "{kind}: {text}")
+    }
+}
+
+/// Writes a line to stderr, in its colours if that is a terminal or the environment asks for them
+/// (`CLICOLOR_FORCE`, `NO_COLOR`). A closed stderr is no error.
+pub(in crate::cli) fn tell(line: impl Display) {
+    let _ = writeln!(anstream::stderr(), "{line}");
+}
