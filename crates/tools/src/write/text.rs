@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use toml_edit::{Document, Item, Table, TomlError};
 
+use super::braces::Braces;
 use super::places::Places;
 use super::section::sections;
 
@@ -153,13 +154,12 @@ impl TomlText {
             _ => item_at(document.as_table(), owner),
         };
         match owner_item {
-            Some(Item::Value(toml_edit::Value::InlineTable(braces))) => {
-                if let Some(place) = braces.span() {
-                    self.add_in_braces(place, name, value, braces.is_empty());
+            // A number or a text has no entries.
+            Some(Item::Value(_)) => {
+                if let Some(braces) = Braces::around(document.as_table(), path) {
+                    self.replace_all(&braces.add(&self.text, value));
                 }
             }
-            // A number or a text has no entries.
-            Some(Item::Value(_)) => {}
             Some(Item::Table(table)) if !table.is_implicit() && !table.is_dotted() => {
                 let line = self.line_after(table, owner.is_empty());
                 self.add_line(line, name, value);
@@ -225,7 +225,8 @@ impl TomlText {
         self.lines_of(item, &mut cuts);
         if let Some(found) = self.find(path) {
             if found.in_braces {
-                cuts = vec![self.entry_in_braces(&found)];
+                let braces = Braces::around(document.as_table(), path);
+                cuts.extend(braces.and_then(|braces| braces.without(&self.text, found.key.start)));
             } else if item.is_value() {
                 cuts.push(self.whole_lines(found.key.start..found.value.end));
             }
@@ -346,35 +347,7 @@ impl TomlText {
         }
     }
 
-    /// Returns the place of an entry in braces, with one of the commas beside it.
-    fn entry_in_braces(&self, found: &Found) -> Range<usize> {
-        let before = self.text[..found.key.start].trim_end();
-        let after = &self.text[found.value.end..];
-        let spaces = after.len() - after.trim_start().len();
-        if before.ends_with(',') {
-            before.len() - 1..found.value.end
-        } else if after.trim_start().starts_with(',') {
-            let end = found.value.end + spaces + 1;
-            let blank = self.text[end..].len() - self.text[end..].trim_start().len();
-            found.key.start..end + blank
-        } else {
-            found.key.start..found.value.end + spaces
-        }
-    }
-
     // -- changes -------------------------------------------------------------------------------
-
-    fn add_in_braces(&mut self, braces: Range<usize>, name: &str, value: &str, is_empty: bool) {
-        let inside = &self.text[braces.start + 1..braces.end - 1];
-        let kept = inside.trim_end();
-        let end = braces.start + 1 + kept.len();
-        let comma = match (is_empty, kept.ends_with(',')) {
-            (true, _) | (_, true) => " ",
-            _ => ", ",
-        };
-        let entry = format!("{comma}{name} = {value} ");
-        self.replace(end..braces.end - 1, &entry);
-    }
 
     /// Adds an entry behind a line, aligned with the entries above if they are aligned.
     fn add_line(&mut self, end: usize, name: &str, value: &str) {
