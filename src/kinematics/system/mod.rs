@@ -49,7 +49,7 @@ pub struct Equation {
     pub target: Target,
     /// The parameters that it uses besides those of markers and of the target.
     pub parameters: Vec<ParameterId>,
-    /// Size of the part of the mechanism that it belongs to, as a part of the mechanism's size.
+    /// Size of its [part](parts) of the mechanism, relative to the mechanism's size.
     part: f64,
 }
 
@@ -67,7 +67,7 @@ pub struct System {
     /// The relations of joints with play, which are no rows.
     open: Vec<OpenRelation>,
     joint_parts: JointParts,
-    /// Size of the part that each body belongs to, as a part of the mechanism's size.
+    /// Size of each body's [part](parts), relative to the mechanism's size.
     part_sizes: Vec<f64>,
 }
 
@@ -580,7 +580,7 @@ impl System {
         self.column_part(column).map_or(1.0, |part| size * part)
     }
 
-    /// Returns the part of the mechanism's size that scales an unknown, `None` for an angle.
+    /// Returns the relative size of the [part](parts) that scales an unknown, `None` for an angle.
     pub(in crate::kinematics) fn column_part(&self, column: usize) -> Option<f64> {
         (!self.is_angle(column)).then(|| self.part_sizes[column / 3])
     }
@@ -603,13 +603,12 @@ impl Equation {
             && self.constraint.turn_effect() == TurnEffect::Whole
     }
 
-    /// Returns the size of the part of the mechanism that the row belongs to, as a part of the
-    /// mechanism's size.
+    /// Returns the size of the row's [part](parts) of the mechanism, relative to the mechanism's size.
     pub(in crate::kinematics) fn part(&self) -> f64 {
         self.part
     }
 
-    /// Returns the size of the part of the mechanism that the row belongs to \[m\].
+    /// Returns the size of the row's [part](parts) of the mechanism \[m\].
     pub(in crate::kinematics) fn size(&self, at: &Configuration) -> f64 {
         at.size() * self.part
     }

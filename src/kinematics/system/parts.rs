@@ -12,7 +12,7 @@ use crate::mechanism::{Mechanism, ProfileInForce};
 /// Least part of the mechanism's size that counts: a body of some eps of it is a point.
 const LEAST: f64 = 1e-15;
 
-/// Returns the size of the part that each body belongs to, as a part of the mechanism's size.
+/// Returns the size of each body's part, relative to the mechanism's size.
 ///
 /// The bodies in one row belong together, those joined by ground alone do not: a platform of 1 mm
 /// is no singular mechanism because a pendulum of 1 km hangs beside it. A size is that of
