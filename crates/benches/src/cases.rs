@@ -101,6 +101,18 @@ impl Case {
                 let legs = [0.40, 0.38, 0.34].map(|to| Sweep::between(0.36, to, sweep, 0.1));
                 repeat(Moving::new(shipped!("platform_3rpr")), legs)
             }
+            "block_and_tackle" => repeat(
+                Moving::new(shipped!("block_and_tackle")),
+                [Sweep::between(0.5, 0.8, sweep, 0.1)],
+            ),
+            "geared_five_bar" => repeat(Moving::new(shipped!("geared_five_bar")), turn),
+            "rack_drive" => repeat(Moving::new(shipped!("rack_drive")), turn),
+            "scissor_lift_screw" => repeat(Moving::new(shipped!("scissor_lift_screw")), turn),
+            "groove_cam" => repeat(Moving::new(shipped!("groove_cam")), turn),
+            "sash_window" => repeat(
+                Moving::new(shipped!("sash_window")),
+                [Sweep::between(0.5, 1.2, sweep, 0.1)],
+            ),
             "chain" => repeat(Moving::new(&chain(size, ground)), turn),
             "lift" => repeat(Moving::new(&scissor_lift(size)), [Sweep::lift(size, sweep)]),
             "free_pendulum" => move_on(Free::pendulum()),
