@@ -13,7 +13,7 @@
 
 use crate::kinematics::constraint::Constraint;
 use crate::kinematics::constraint::moving_configuration::{
-    CurvesAlong, Varied, VariedConfiguration, VariedMechanism, evaluate,
+    Bodies, CurvesAlong, Varied, VariedConfiguration, VariedMechanism, evaluate,
 };
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::path::Rates;

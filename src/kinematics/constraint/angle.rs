@@ -4,7 +4,6 @@ use super::configuration::Configuration;
 use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
 use super::moving_configuration::{Moving, VariedMechanism};
-use super::region::Region;
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = theta_j − theta_i, with whole turns.
@@ -31,14 +30,14 @@ impl Constraint for Angle {
         at.marker(self.to).theta - at.marker(self.from).theta
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         row.add_direction(at.marker(self.to), 1.0);
         row.add_direction(at.marker(self.from), -1.0);
+        self.value(at)
     }
 
-    /// Returns zero: the angle is linear in q.
-    fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
-        0.0
+    fn is_affine(&self) -> bool {
+        true
     }
 
     fn is_linear(&self, _mechanism: &Mechanism) -> bool {
@@ -47,17 +46,6 @@ impl Constraint for Angle {
 
     fn turn_effect(&self) -> TurnEffect {
         TurnEffect::Whole
-    }
-
-    /// Returns zero: the angle is linear in q.
-    fn bend(
-        &self,
-        _at: &Configuration,
-        _region: &Region<'_>,
-        _v: &[f64],
-        _row: &mut Gradient,
-    ) -> Option<f64> {
-        Some(0.0)
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {

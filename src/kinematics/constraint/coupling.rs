@@ -259,26 +259,14 @@ impl Constraint for Coupling {
         self.in_force(at, self.values(at).map(Jet::constant)).value
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let mut own = Gradient::new();
         for (coordinate, partial) in self.coordinates.iter().zip(self.partials(at)) {
             own.clear();
             coordinate.constraint().gradient(at, &mut own);
             row.add_multiple(partial, &own);
         }
-    }
-
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let mut own = Gradient::new();
-        let mut numbers = [Jet::constant(0.0); MOST_COUPLED];
-        for (number, coordinate) in numbers.iter_mut().zip(&self.coordinates) {
-            own.clear();
-            let coordinate = coordinate.constraint();
-            let value = coordinate.value_and_gradient(at, &mut own);
-            let second = coordinate.quadratic(at, q_dot);
-            *number = Jet::new(value, [own.dot(q_dot), second]);
-        }
-        self.in_force(at, numbers).second()
+        self.value(at)
     }
 
     fn has_given_function(&self) -> bool {

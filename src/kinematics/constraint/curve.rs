@@ -271,28 +271,8 @@ impl Constraint for PlaceOnCurve {
         Dimension::Angle
     }
 
-    fn value(&self, at: &Configuration) -> f64 {
-        at.joint_unknown(self.0)
-    }
-
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        row.add_joint_unknown(at.joint_unknown_column(self.0), 1.0);
-    }
-
-    /// Returns zero: the place is an unknown.
-    fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
-        0.0
-    }
-
-    /// Returns zero: the place is an unknown.
-    fn bend(
-        &self,
-        _at: &Configuration,
-        _region: &Region<'_>,
-        _v: &[f64],
-        _row: &mut Gradient,
-    ) -> Option<f64> {
-        Some(0.0)
+    fn is_affine(&self) -> bool {
+        true
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
@@ -320,13 +300,6 @@ impl Constraint for OnCurve {
         let point = self.on_curve(at);
         row.add_joint_unknown(at.joint_unknown_column(self.place), -point.first());
         self.coordinate.value_and_gradient(at, row) - point.value
-    }
-
-    /// Returns that of the coordinate − C″ · e ṡ².
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let point = self.on_curve(at);
-        let rate = q_dot[at.joint_unknown_column(self.place)];
-        self.coordinate.quadratic(at, q_dot) - point.second() * rate * rate
     }
 
     /// Bounds C″ over the part of the curve in the region.
@@ -409,19 +382,12 @@ impl Constraint for AlongCurve {
         sin
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        let ([i, j], [cos, _], turn) = self.turned(at);
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
+        let ([i, j], [cos, sin], turn) = self.turned(at);
         row.add_direction(j, cos);
         row.add_direction(i, -cos);
         row.add_joint_unknown(at.joint_unknown_column(self.place), -cos * turn[0]);
-    }
-
-    /// Returns −sin β β̇² − cos β α″ ṡ² with the curve's direction α(s).
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let ([i, j], [cos, sin], turn) = self.turned(at);
-        let rate = q_dot[at.joint_unknown_column(self.place)];
-        let omega = angular_velocity(j, q_dot) - angular_velocity(i, q_dot) - turn[0] * rate;
-        -sin * omega * omega - cos * turn[1] * rate * rate
+        sin
     }
 
     fn bend(

@@ -6,11 +6,14 @@ use nalgebra::Vector2;
 
 use super::configuration::{self, Configuration, JointUnknownId, perp};
 use super::gradient::Gradient;
+use super::line::{Bounded, Line, Slopes};
 use super::moving_configuration::{
     self, Enclosed, Moving, Varied, VariedConfiguration, VariedMechanism,
 };
 use super::region::Region;
-use crate::mechanism::{Expression, MarkerId, Mechanism, Number, ParameterId, Taylor};
+use crate::mechanism::{
+    Dual, Expression, Interval, Jet, MarkerId, Mechanism, Number, ParameterId, Taylor,
+};
 
 /// The dimension of a relation, which decides its unit and the scale of its residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +88,7 @@ pub(in crate::kinematics) fn partial<S: Number, const N: usize>(
     column: usize,
 ) -> S
 where
-    Taylor<S, N>: Moving,
+    Taylor<S, N>: for<'a> Moving<Bodies<'a> = VariedConfiguration<Taylor<S, N>>>,
 {
     let q = bodies.coordinate(column);
     // At rest but for a unit rate of this unknown, the rate of the relation is its derivative.
@@ -95,36 +98,111 @@ where
     rate.first()
 }
 
-/// A scalar relation c(q) between bodies. It is a [`Formula`], too.
+/// Returns the value of a formula.
+pub(super) fn derived_value(formula: &(impl Along<Dual> + ?Sized), at: &Configuration) -> f64 {
+    formula
+        .along(&Line::through(at, Slopes::Zero).mechanism())
+        .value
+}
+
+/// Adds the gradient of a formula to `row` and returns its value: the rate of c for q̇ = e_k is its
+/// derivative by q_k.
+pub(super) fn derived_gradient(
+    formula: &(impl Along<Dual> + ?Sized),
+    at: &Configuration,
+    row: &mut Gradient,
+) -> f64 {
+    let value = formula.along(&Line::noting(at, row).mechanism()).value;
+    row.replace(|column, entry| {
+        let line = Line::through(at, Slopes::Unit(column));
+        entry + formula.along(&line.mechanism()).first()
+    });
+    value
+}
+
+/// Returns the quadratic term of a formula: c̈ on a straight line.
+pub(super) fn derived_quadratic(
+    formula: &(impl Along<Jet> + ?Sized),
+    at: &Configuration,
+    q_dot: &[f64],
+) -> f64 {
+    let line = Line::through(at, Slopes::All(q_dot));
+    formula.along(&line.mechanism()).second()
+}
+
+/// Bounds the bend of a formula by enclosures of its derivatives along lines through the region.
+pub(super) fn derived_bend<F: Along<Dual> + Along<Bounded> + ?Sized>(
+    formula: &F,
+    at: &Configuration,
+    region: &Region<'_>,
+    v: &[f64],
+    row: &mut Gradient,
+) -> Option<f64> {
+    let along =
+        |slopes| -> Bounded { formula.along(&Line::within(region, at, slopes).mechanism()) };
+    let bend = along(Slopes::All(v)).second().magnitude();
+    let mut changes = Gradient::new();
+    derived_gradient(formula, at, &mut changes);
+    changes.replace(|column, entry| {
+        let slope = along(Slopes::Unit(column)).first();
+        (slope - Interval::point(entry)).magnitude()
+    });
+    row.add(&changes);
+    let mut entries = changes.entries();
+    (bend.is_finite() && entries.all(|(_, change)| change.is_finite())).then_some(bend)
+}
+
+/// A scalar relation c(q) between bodies. It is a [`Formula`], from which value, gradient, quadratic
+/// term and bend follow; a relation in most steps has them by hand as well, as they are faster.
 pub trait Constraint:
-    Any + Along<Varied> + Along<Enclosed> + std::fmt::Debug + Send + Sync
+    Any
+    + Along<Dual>
+    + Along<Jet>
+    + Along<Bounded>
+    + Along<Varied>
+    + Along<Enclosed>
+    + std::fmt::Debug
+    + Send
+    + Sync
 {
     /// Returns the dimension of c.
     fn dimension(&self) -> Dimension;
 
     /// Returns c(q) \[m or rad\].
-    fn value(&self, at: &Configuration) -> f64;
+    fn value(&self, at: &Configuration) -> f64 {
+        derived_value(self, at)
+    }
 
-    /// Adds ∂c/∂q, a row of the Jacobian (Eq. 3.6.4), to `row`. A relation has this method or the
-    /// next one.
+    /// Adds ∂c/∂q, a row of the Jacobian (Eq. 3.6.4), to `row`. What is written by hand is the next
+    /// method.
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
         self.value_and_gradient(at, row);
     }
 
     /// Adds ∂c/∂q to `row` and returns c(q).
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
-        self.gradient(at, row);
-        self.value(at)
+        derived_gradient(self, at, row)
     }
 
     /// Returns q̇ᵀ (∂²c/∂q²) q̇, which is c̈ for q̈ = 0; Eq. 3.6.11 has it with the opposite sign.
     /// `q_dot` is as long as q.
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        if self.is_affine() {
+            0.0
+        } else {
+            derived_quadratic(self, at, q_dot)
+        }
+    }
 
     /// Returns whether c contains a function that the file gives: a contour, a curve, an equation that
     /// is not linear. It may bend anywhere without a trace elsewhere. All else is analytic, and bends
     /// no more than circles of the mechanism's size do.
     fn has_given_function(&self) -> bool {
+        false
+    }
+
+    /// Returns whether c is linear in q: its second derivatives are zero.
+    fn is_affine(&self) -> bool {
         false
     }
 
@@ -155,7 +233,13 @@ pub trait Constraint:
         region: &Region<'_>,
         v: &[f64],
         row: &mut Gradient,
-    ) -> Option<f64>;
+    ) -> Option<f64> {
+        if self.is_affine() {
+            Some(0.0)
+        } else {
+            derived_bend(self, at, region, v, row)
+        }
+    }
 
     /// Notes the unknowns and parameters in c, except those whose coefficient is zero for all
     /// values of the parameters.

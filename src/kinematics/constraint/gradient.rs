@@ -60,6 +60,14 @@ impl Gradient {
         }
     }
 
+    /// Adds another row.
+    pub(super) fn add(&mut self, row: &Self) {
+        self.add_multiple(1.0, row);
+        if let Some((column, value)) = row.joint_unknown {
+            self.add_joint_unknown(column, value);
+        }
+    }
+
     /// Adds the multiple of a row that has no joint unknown.
     pub(super) fn add_multiple(&mut self, factor: f64, row: &Self) {
         for &(body, entries) in row.bodies() {

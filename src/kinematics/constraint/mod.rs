@@ -7,13 +7,16 @@
 //!
 //! | file | subject |
 //! |---|---|
-//! | `definition` | the traits [`Constraint`] and [`Formula`], with [`Dimension`], [`TurnEffect`], [`Incidence`] |
+//! | `definition` | the traits [`Constraint`] and [`Formula`], with [`Dimension`], [`TurnEffect`], [`Incidence`]; value, gradient, quadratic term and bend of a formula |
+//! | `moving_configuration`, `line` | the numbers on which formulas are evaluated |
 //! | `gradient` | [`Gradient`], a row of the Jacobian |
 //! | `region`, `point` | bounds around a pose; velocities and accelerations of points |
 //! | the others | a relation each |
 //!
-//! To add a relation, add a file with its `impl Constraint` and `impl Formula`, and list it in `samples` of `tests.rs`,
-//! where all tests of relations run on it.
+//! To add a relation, add a file with its `impl Formula` and, in `impl Constraint`, its dimension and
+//! its incidence, and list it in `samples` of `tests.rs`, where all tests of relations run on it. What
+//! follows from the formula is written by hand only where a mechanism would otherwise take more than
+//! 1.3 times as many instructions per step.
 
 mod angle;
 mod cam;
@@ -24,6 +27,7 @@ mod curve;
 mod definition;
 mod distance;
 mod gradient;
+mod line;
 pub mod moving_configuration;
 mod point;
 mod projection;

@@ -4,6 +4,7 @@
 //!
 //! | number | derivatives | use |
 //! |---|---|---|
+//! | [`Dual`], [`Jet`] | along a straight line in the space of q | gradients and quadratic terms |
 //! | [`Varied`] | in time, each with its change along a direction in the space of drivers and parameters | [`Sensitivity`](crate::kinematics::Sensitivity) |
 //! | [`Enclosed`] | along a sub-step, each enclosed over all of it | the certificate while parameters move |
 
@@ -23,6 +24,9 @@ pub type Enclosed = Jet3<Interval>;
 
 /// A number that the quantities of a moving mechanism are made of.
 pub trait Moving: Number {
+    /// The bodies and coefficients of the mechanism.
+    type Bodies<'a>: Bodies<Self>;
+
     /// The profiles of all cams and the laws of all couplings.
     type Curves<'a>: Copy + std::fmt::Debug;
 
@@ -37,6 +41,21 @@ pub trait Moving: Number {
     fn on_points(path: &PointPath, place: Self) -> [[Self; 2]; 2];
 }
 
+/// The bodies of a mechanism on some type of numbers.
+pub trait Bodies<N> {
+    /// Returns a marker.
+    fn marker(&self, marker: MarkerId) -> VariedMarker<N>;
+
+    /// Returns a body's angle \[rad\], zero for ground.
+    fn phi(&self, body: Option<BodyId>) -> N;
+
+    /// Returns a coefficient.
+    fn coefficient(&self, id: CoefficientId) -> N;
+
+    /// Returns a joint unknown.
+    fn joint_unknown(&self, id: JointUnknownId) -> N;
+}
+
 /// The profiles of all cams and the laws of all couplings along a direction.
 #[derive(Clone, Debug, Default)]
 pub struct CurvesAlong {
@@ -47,6 +66,7 @@ pub struct CurvesAlong {
 }
 
 impl Moving for Varied {
+    type Bodies<'a> = VariedConfiguration;
     type Curves<'a> = &'a CurvesAlong;
 
     fn radius(curves: &CurvesAlong, profile: ProfileId, theta: Self) -> [Self; 2] {
@@ -88,6 +108,7 @@ pub struct EnclosedCurves<'a> {
 }
 
 impl Moving for Enclosed {
+    type Bodies<'a> = VariedConfiguration<Self>;
     type Curves<'a> = EnclosedCurves<'a>;
 
     fn law(curves: EnclosedCurves<'_>, law: LawId, argument: Self) -> Self {
@@ -140,7 +161,7 @@ pub(in crate::kinematics) fn bend(quantity: &Enclosed) -> f64 {
 
 /// Returns the components of a path and their derivatives by a moving place, from those with three
 /// derivatives by it.
-fn on_path<S: Number, const N: usize>(
+pub(super) fn on_path<S: Number, const N: usize>(
     at: [Jet3<S>; 2],
     place: Taylor<S, N>,
 ) -> [[Taylor<S, N>; 2]; 2] {
@@ -155,7 +176,7 @@ fn on_path<S: Number, const N: usize>(
 }
 
 /// Returns R(θ) and R′(θ) for a moving θ, from R and its derivatives with respect to θ.
-fn of_contour<S: Number, const N: usize>(
+pub(super) fn of_contour<S: Number, const N: usize>(
     radius: Jet3<S>,
     theta: Taylor<S, N>,
 ) -> [Taylor<S, N>; 2] {
@@ -202,7 +223,7 @@ pub struct VariedConfiguration<N = Varied> {
 #[derive(Debug)]
 pub struct VariedMechanism<'a, 'p, N: Moving = Varied> {
     /// Its bodies.
-    pub bodies: &'a VariedConfiguration<N>,
+    pub bodies: &'a N::Bodies<'p>,
     /// The curves in its relations.
     pub curves: N::Curves<'p>,
 }
@@ -294,10 +315,10 @@ impl<N: Number> VariedConfiguration<N> {
         let frame = &self.frames[marker.index()];
         (frame.position, frame.angle)
     }
+}
 
-    /// Returns a marker.
-    #[must_use]
-    pub fn marker(&self, marker: MarkerId) -> VariedMarker<N> {
+impl<N: Number> Bodies<N> for VariedConfiguration<N> {
+    fn marker(&self, marker: MarkerId) -> VariedMarker<N> {
         let VariedFrame {
             body,
             position,
@@ -319,21 +340,15 @@ impl<N: Number> VariedConfiguration<N> {
         }
     }
 
-    /// Returns a body's angle \[rad\], zero for ground.
-    #[must_use]
-    pub fn phi(&self, body: Option<BodyId>) -> N {
+    fn phi(&self, body: Option<BodyId>) -> N {
         body.map_or(N::constant(0.0), |body| self.q[3 * body.index() + 2])
     }
 
-    /// Returns a coefficient.
-    #[must_use]
-    pub fn coefficient(&self, id: CoefficientId) -> N {
+    fn coefficient(&self, id: CoefficientId) -> N {
         self.coefficients[id.0]
     }
 
-    /// Returns a joint unknown.
-    #[must_use]
-    pub fn joint_unknown(&self, id: JointUnknownId) -> N {
+    fn joint_unknown(&self, id: JointUnknownId) -> N {
         self.q[3 * self.bodies + id.0]
     }
 }
@@ -396,8 +411,8 @@ impl VariedConfiguration {
     }
 }
 
-impl<N: Moving> std::ops::Deref for VariedMechanism<'_, '_, N> {
-    type Target = VariedConfiguration<N>;
+impl<'p, N: Moving> std::ops::Deref for VariedMechanism<'_, 'p, N> {
+    type Target = N::Bodies<'p>;
 
     fn deref(&self) -> &Self::Target {
         self.bodies
@@ -405,6 +420,30 @@ impl<N: Moving> std::ops::Deref for VariedMechanism<'_, '_, N> {
 }
 
 impl<N: Moving> VariedMechanism<'_, '_, N> {
+    /// Returns a marker.
+    #[must_use]
+    pub fn marker(&self, marker: MarkerId) -> VariedMarker<N> {
+        self.bodies.marker(marker)
+    }
+
+    /// Returns a body's angle \[rad\], zero for ground.
+    #[must_use]
+    pub fn phi(&self, body: Option<BodyId>) -> N {
+        self.bodies.phi(body)
+    }
+
+    /// Returns a coefficient.
+    #[must_use]
+    pub fn coefficient(&self, id: CoefficientId) -> N {
+        self.bodies.coefficient(id)
+    }
+
+    /// Returns a joint unknown.
+    #[must_use]
+    pub fn joint_unknown(&self, id: JointUnknownId) -> N {
+        self.bodies.joint_unknown(id)
+    }
+
     /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ).
     #[must_use]
     pub fn radius(&self, profile: ProfileId, theta: N) -> [N; 2] {

@@ -64,14 +64,11 @@ impl Constraint for RackAndPinion {
         self.travel().value(at) + self.arc(at) * turn
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         self.travel().gradient(at, row);
         row.add_direction(at.marker(self.pinion), self.arc(at));
         row.add_direction(at.marker(self.rack), -self.arc(at));
-    }
-
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        self.travel().quadratic(at, q_dot)
+        self.value(at)
     }
 
     fn turn_effect(&self) -> TurnEffect {

@@ -231,7 +231,7 @@ fn samples_of_curves(
             ),
         ] {
             for axis in [Axis::X, Axis::Y] {
-                samples.push(Box::new(OnCurve {
+                let on_curve = OnCurve {
                     coordinate: Projection {
                         from,
                         to,
@@ -240,7 +240,9 @@ fn samples_of_curves(
                     },
                     path: path.clone(),
                     place,
-                }));
+                };
+                samples.push(Box::new(on_curve.place()));
+                samples.push(Box::new(on_curve));
             }
             if is_bent {
                 samples.push(Box::new(AlongCurve {
@@ -355,6 +357,14 @@ fn pose_and_velocity() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
     })
 }
 
+/// Returns all entries of a row.
+fn dense(row: &Gradient) -> [f64; UNKNOWNS] {
+    let mut dense = [0.0; UNKNOWNS];
+    row.entries()
+        .for_each(|(column, value)| dense[column] += value);
+    dense
+}
+
 fn moved(q: &[f64], direction: &[f64], s: f64) -> Vec<f64> {
     q.iter().zip(direction).map(|(q, d)| q + s * d).collect()
 }
@@ -400,6 +410,37 @@ proptest! {
         }
     }
 
+    /// Value, gradient and quadratic term written by hand agree with those that follow from the
+    /// formula.
+    #[test]
+    fn derivatives_by_hand_are_those_of_the_formula((q, q_dot) in pose_and_velocity()) {
+        let mechanism = mechanism();
+        let mut at = configuration(&mechanism);
+        at.set_pose(&mechanism, &q);
+        for constraint in samples(&mechanism) {
+            let (mut by_hand, mut derived) = (Gradient::new(), Gradient::new());
+            let values = [
+                constraint.value(&at),
+                constraint.value_and_gradient(&at, &mut by_hand),
+                constraint.quadratic(&at, &q_dot),
+            ];
+            let of_formula = [
+                definition::derived_value(&*constraint, &at),
+                definition::derived_gradient(&*constraint, &at, &mut derived),
+                definition::derived_quadratic(&*constraint, &at, &q_dot),
+            ];
+            let values = values.into_iter().chain(dense(&by_hand));
+            let of_formula = of_formula.into_iter().chain(dense(&derived));
+            for (by_hand, derived) in values.zip(of_formula) {
+                // Rounding of sums of some products of lengths up to 7 m, angles and rates up to 1.
+                prop_assert!(
+                    (by_hand - derived).abs() < 1e-12 * (1.0 + by_hand.abs()),
+                    "{constraint:?}: {by_hand} {derived}"
+                );
+            }
+        }
+    }
+
     /// For a motion, value, rate and acceleration agree with value, gradient and quadratic term,
     /// and their changes along a direction agree with differences.
     #[test]
@@ -433,7 +474,7 @@ proptest! {
                 let acceleration = row.dot(&q_ddot) + constraint.quadratic(&at, &q_dot);
                 [constraint.value(&at), row.dot(&q_dot), acceleration]
             };
-            let along = constraint.along(&varied);
+            let along: Varied = constraint.along(&varied);
             let here = motion(0.0);
             let motion = std::cell::RefCell::new(motion);
             for (order, along) in [along.value, along.first(), along.second()].iter().enumerate() {
@@ -451,8 +492,8 @@ proptest! {
         }
     }
 
-    /// At points of the region the gradient changes by no more than its bound, and the quadratic
-    /// term is within its bound.
+    /// At points of the region the gradient changes by no more than its bound, by hand and by the
+    /// formula, and the quadratic term is within its bound.
     #[test]
     fn bend_bounds_hold_in_their_region(
         (q, v) in pose_and_velocity(),
@@ -467,38 +508,35 @@ proptest! {
         let region = Region { radii: &radii, line: line.map(|_| &v[..]) };
         let mechanism = mechanism();
         let mut at = configuration(&mechanism);
-        let dense = |row: &Gradient| {
-            let mut dense = [0.0; UNKNOWNS];
-            row.entries().for_each(|(column, value)| dense[column] += value);
-            dense
-        };
         for constraint in samples(&mechanism) {
             at.set_pose(&mechanism, &q);
             let mut row = Gradient::new();
             constraint.gradient(&at, &mut row);
             let centre = dense(&row);
             row.clear();
-            let Some(bound) = constraint.bend(&at, &region, &v, &mut row) else {
-                continue;
-            };
-            let change = dense(&row);
-            for (place, along) in places.iter().zip(&along) {
-                let off: Vec<_> = place.iter().zip(&radii).map(|(p, r)| p * r).collect();
-                let here = line.map_or(q.clone(), |_| moved(&q, &v, *along));
-                at.set_pose(&mechanism, &moved(&here, &off, 1.0));
-                row.clear();
-                constraint.gradient(&at, &mut row);
-                let here = dense(&row);
-                for k in 0..UNKNOWNS {
-                    let changed = (here[k] - centre[k]).abs();
-                    // Rounding of values up to 7 m.
-                    prop_assert!(
-                        changed <= change[k] + 1e-13,
-                        "{constraint:?} column {k}: {changed} > {}", change[k]
-                    );
+            let by_hand = constraint.bend(&at, &region, &v, &mut row).map(|bound| (bound, dense(&row)));
+            row.clear();
+            let derived = definition::derived_bend(&*constraint, &at, &region, &v, &mut row);
+            let derived = derived.map(|bound| (bound, dense(&row)));
+            for (bound, change) in by_hand.into_iter().chain(derived) {
+                for (place, along) in places.iter().zip(&along) {
+                    let off: Vec<_> = place.iter().zip(&radii).map(|(p, r)| p * r).collect();
+                    let here = line.map_or(q.clone(), |_| moved(&q, &v, *along));
+                    at.set_pose(&mechanism, &moved(&here, &off, 1.0));
+                    row.clear();
+                    constraint.gradient(&at, &mut row);
+                    let here = dense(&row);
+                    for k in 0..UNKNOWNS {
+                        let changed = (here[k] - centre[k]).abs();
+                        // Rounding of values up to 7 m.
+                        prop_assert!(
+                            changed <= change[k] + 1e-13,
+                            "{constraint:?} column {k}: {changed} > {}", change[k]
+                        );
+                    }
+                    let quadratic = constraint.quadratic(&at, &v).abs();
+                    prop_assert!(quadratic <= bound + 1e-13, "{constraint:?}: {quadratic} > {bound}");
                 }
-                let quadratic = constraint.quadratic(&at, &v).abs();
-                prop_assert!(quadratic <= bound + 1e-13, "{constraint:?}: {quadratic} > {bound}");
             }
         }
     }
@@ -529,7 +567,7 @@ proptest! {
         let curves = EnclosedCurves { in_force: &profiles, moving: &[], laws: &laws };
         let chord = VariedMechanism { bodies: &chord, curves };
         for constraint in samples(&mechanism) {
-            let on_chord = constraint.along(&chord);
+            let on_chord: Enclosed = constraint.along(&chord);
             let motion = [on_chord.value, on_chord.first(), on_chord.second()];
             let gradient: Vec<_> = (0..UNKNOWNS)
                 .map(|k| partial(&*constraint, &mut around, curves, k))

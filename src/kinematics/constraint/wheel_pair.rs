@@ -4,7 +4,6 @@ use super::configuration::{CoefficientId, Configuration};
 use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
 use super::moving_configuration::{Moving, VariedMechanism};
-use super::region::Region;
 use crate::mechanism::{BodyId, MarkerId, Mechanism};
 
 /// c = (theta_j − phi_c) − k (theta_i − phi_c), with k = ±r_i / r_j and whole turns.
@@ -57,31 +56,20 @@ impl Constraint for WheelPair {
         second - self.ratio(at) * first
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let k = self.ratio(at);
         row.add_direction(at.marker(self.to), 1.0);
         row.add_direction(at.marker(self.from), -k);
         row.add_turn(self.carrier, k - 1.0);
+        self.value(at)
     }
 
-    /// Returns zero: the relation is linear in q.
-    fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
-        0.0
+    fn is_affine(&self) -> bool {
+        true
     }
 
     fn turn_effect(&self) -> TurnEffect {
         TurnEffect::Proportional
-    }
-
-    /// Returns zero: the relation is linear in q.
-    fn bend(
-        &self,
-        _at: &Configuration,
-        _region: &Region<'_>,
-        _v: &[f64],
-        _row: &mut Gradient,
-    ) -> Option<f64> {
-        Some(0.0)
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {

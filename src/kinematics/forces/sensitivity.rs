@@ -13,7 +13,7 @@ use super::solve::{ForceParts, Forces, KnownMotion, Loads};
 use super::wrench::Wrench;
 use crate::kinematics::analysis::{Direction, Sensitivity};
 use crate::kinematics::constraint::moving_configuration::{
-    CurvesAlong, Varied, VariedConfiguration,
+    Bodies, CurvesAlong, Varied, VariedConfiguration,
 };
 use crate::kinematics::constraint::{Constraint, Gradient, partial};
 use crate::kinematics::error::{Error, NoLimit};
