@@ -8,7 +8,6 @@ use super::configuration::{CoefficientId, Configuration, perp};
 use super::definition::{Constraint, Dimension, Formula, Incidence};
 use super::gradient::Gradient;
 use super::moving_configuration::{Moving, VariedMechanism, dot, quarter_turn, subtract};
-use super::point::{centripetal, point_velocity};
 use super::region::{Region, centripetal_bound, chord, speed_bound};
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{MarkerId, Mechanism, Number};
@@ -226,19 +225,6 @@ impl Constraint for RopeLength {
 
     fn value(&self, at: &Configuration) -> f64 {
         self.value_and_gradient(at, &mut Gradient::new())
-    }
-
-    /// Returns Σ p ((n · ḋ)² / t + e · d̈): a tangent turns at (n · ḋ) / t.
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let of_leg = |([from, to], part): ([Station; 2], CoefficientId)| {
-            let Leg { length, e, .. } = self.leg([from, to], at);
-            let [i, j] = [from, to].map(|station| at.marker(station.marker));
-            let d_dot = point_velocity(j, q_dot) - point_velocity(i, q_dot);
-            let d_ddot = centripetal(j, q_dot) - centripetal(i, q_dot);
-            let across = e.perp(&d_dot);
-            at.coefficient(part) * (across * across / length + e.dot(&d_ddot))
-        };
-        self.legs().map(of_leg).sum()
     }
 
     fn admits(&self, value: f64) -> bool {
