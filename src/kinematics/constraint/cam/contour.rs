@@ -61,15 +61,6 @@ pub(super) struct ContourBounds {
     pub(super) turn_jump: f64,
 }
 
-/// The motion of the contact for given rates and q̈ = 0.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ContactMotion {
-    /// Velocity and acceleration of the point of contact relative to the pole.
-    pub(super) arm: [Vector2<f64>; 2],
-    /// First and second derivative in time of the tangent's direction.
-    pub(super) tangent: [f64; 2],
-}
-
 impl Contour {
     /// Returns the vector from the pole to the contour's point at the polar angle `theta`.
     pub(super) fn arm(cam: MarkerPose, theta: f64, radius: f64) -> Vector2<f64> {
@@ -192,7 +183,7 @@ impl Contour {
             return [turn, gap];
         };
         let (omega, rate) = (angular_velocity(cam, line), line[self.column(at)]);
-        let motion = shape.motion(omega, rate);
+        let (arm, tangent) = shape.rates(omega, rate);
         let [_, arm_bend, _, turn_bend] = bounds.motion(omega, rate);
         let bend = centripetal_bound(cam, follower, line) + arm_bend;
         let swing = if with {
@@ -200,8 +191,8 @@ impl Contour {
         } else {
             0.0
         };
-        let velocity = point_velocity(follower, line) - point_velocity(cam, line) - motion.arm[0];
-        let turning = (motion.tangent[0] - swing).abs() + bounds.turn_jump * rate.abs();
+        let velocity = point_velocity(follower, line) - point_velocity(cam, line) - arm;
+        let turning = (tangent - swing).abs() + bounds.turn_jump * rate.abs();
         let [off_turn, off_gap] = anywhere(&region.off_line(), bounds.off_line);
         // Without a third derivative some of these are not finite.
         [
@@ -239,31 +230,21 @@ impl Shape {
         Contour::normal(self.tangent)
     }
 
-    /// Returns the motion of the contact on a cam that turns at `omega`: its derivative with
-    /// respect to θ is v times the tangent, and the derivative of the tangent's direction is
-    /// `turn`.
-    pub(super) fn motion(&self, omega: f64, contact_rate: f64) -> ContactMotion {
-        let ([v, v1], [turn, turn_rate]) = (self.speed, self.turn);
-        let slip = v * contact_rate * self.tangent;
-        let across = perp(self.tangent);
-        ContactMotion {
-            arm: [
-                omega * perp(self.arm) + slip,
-                -omega * omega * self.arm
-                    + 2.0 * omega * perp(slip)
-                    + contact_rate * contact_rate * (v1 * self.tangent + v * turn * across),
-            ],
-            tangent: [
-                omega + turn * contact_rate,
-                turn_rate * contact_rate * contact_rate,
-            ],
-        }
+    /// Returns the velocity of the contact relative to the pole and the rate of the tangent's direction
+    /// on a cam that turns at `omega`: the derivative of the contact with respect to θ is v times the
+    /// tangent, that of the tangent's direction `turn`.
+    fn rates(&self, omega: f64, contact_rate: f64) -> (Vector2<f64>, f64) {
+        let slip = self.speed[0] * contact_rate * self.tangent;
+        (
+            omega * perp(self.arm) + slip,
+            omega + self.turn[0] * contact_rate,
+        )
     }
 }
 
 impl ContourBounds {
-    /// Bounds the magnitudes of [`Shape::motion`]: velocity and acceleration of the contact
-    /// relative to the pole, then first and second derivative of the tangent's direction.
+    /// Bounds the magnitudes of velocity and acceleration of the contact relative to the pole, then of
+    /// first and second derivative of the tangent's direction, for q̈ = 0.
     pub(super) fn motion(&self, omega: f64, contact_rate: f64) -> [f64; 4] {
         let (omega, contact_rate) = (omega.abs(), contact_rate.abs());
         let ([v, v1], [turn, turn_rate]) = (self.speed, self.turn);

@@ -6,7 +6,7 @@ use super::super::definition::{
     Axis, Constraint, Dimension, Formula, Incidence, JointUnknown, axis_components,
 };
 use super::super::gradient::Gradient;
-use super::super::point::{angular_velocity, centripetal, point_velocity};
+use super::super::point::angular_velocity;
 use super::super::region::{Region, centripetal_bound, speed_bound};
 use super::contour::{AT_THE_POLE, Contour, Shape};
 use crate::kinematics::constraint::configuration::{Configuration, MarkerPose, perp};
@@ -70,16 +70,6 @@ impl Constraint for FlatContact {
         row.add_direction(follower, -cosine);
         row.add_joint_unknown(self.contour.column(at), cosine * contact.turn[0]);
         sine
-    }
-
-    /// Returns cos δ δ̈ − sin δ δ̇².
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let follower = at.marker(self.follower);
-        let (cam, contact) = self.contour.at(at);
-        let (sine, cosine) = lean(follower, &contact);
-        let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
-        let rate = motion.tangent[0] - angular_velocity(follower, q_dot);
-        cosine * motion.tangent[1] - sine * rate * rate
     }
 
     fn bend(
@@ -180,24 +170,6 @@ impl Constraint for FlatFace {
         let along = contact.speed[0] * contact.tangent.dot(&normal);
         row.add_joint_unknown(self.contour.column(at), along);
         g.dot(&normal)
-    }
-
-    /// Returns g̈ · n − 2 omega ġ · u − omega² g · n with the follower's omega.
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let Face {
-            cam,
-            follower,
-            contact,
-            g,
-            normal,
-        } = self.face(at);
-        let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
-        let g_dot = point_velocity(cam, q_dot) + motion.arm[0] - point_velocity(follower, q_dot);
-        let g_ddot = centripetal(cam, q_dot) + motion.arm[1] - centripetal(follower, q_dot);
-        let omega = angular_velocity(follower, q_dot);
-        g_ddot.dot(&normal)
-            - 2.0 * omega * g_dot.dot(&follower.axis)
-            - omega * omega * g.dot(&normal)
     }
 
     /// Bounds each factor in the terms of gradient and quadratic term.

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::super::definition::{Constraint, Dimension, Formula, Incidence};
 use super::super::gradient::Gradient;
-use super::super::point::{angular_velocity, centripetal, point_velocity};
+use super::super::point::angular_velocity;
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
 use crate::kinematics::constraint::configuration::{Configuration, ProfileId, perp};
 use crate::kinematics::constraint::moving_configuration::{
@@ -110,22 +110,6 @@ impl Constraint for KnifeEdge {
         row.add_point(at.marker(self.cam), -direction);
         row.add_direction(at.marker(self.cam), polar.contour.first());
         polar.distance - polar.contour.value
-    }
-
-    /// Returns ρ̈ − R″ θ̇² − R′ θ̈ with ρ̈ and θ̈ for q̈ = 0.
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let polar = self.polar(at);
-        let (cam, follower) = (at.marker(self.cam), at.marker(self.follower));
-        let d_dot = point_velocity(follower, q_dot) - point_velocity(cam, q_dot);
-        let d_ddot = centripetal(follower, q_dot) - centripetal(cam, q_dot);
-        let across = perp(polar.radial);
-        let swing = across.dot(&d_dot) / polar.distance;
-        let rate = swing - angular_velocity(cam, q_dot);
-        let (r1, r2) = (polar.contour.first(), polar.contour.second());
-        let radial = swing * swing * polar.distance + polar.radial.dot(&d_ddot);
-        let angular =
-            (across.dot(&d_ddot) - 2.0 * polar.radial.dot(&d_dot) * swing) / polar.distance;
-        radial - r2 * rate * rate - r1 * angular
     }
 
     /// Bounds each factor in the terms of gradient and quadratic term: ρ shrinks by at most the

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::super::definition::{Axis, Constraint, Dimension, Formula, Incidence, JointUnknown};
 use super::super::gradient::Gradient;
-use super::super::point::{angular_velocity, centripetal, point_velocity};
+use super::super::point::angular_velocity;
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
 use super::contour::{AT_THE_POLE, Contour, Shape};
 use crate::kinematics::constraint::configuration::{Configuration, MarkerPose, perp};
@@ -104,24 +104,6 @@ impl Constraint for Roller {
         let along = e.dot(&across) * contact.turn[0] - contact.speed[0] * contact.tangent.dot(&w);
         row.add_joint_unknown(self.contour.column(at), along);
         e.dot(&w)
-    }
-
-    /// Returns ë · w + 2 Ω ė · w⊥ + Ω̇ e · w⊥ − Ω² e · w with the rate Ω of w's direction.
-    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
-        let Touch {
-            cam,
-            follower,
-            contact,
-            e,
-            w,
-            across,
-        } = self.touch(at);
-        let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
-        let e_dot = point_velocity(follower, q_dot) - point_velocity(cam, q_dot) - motion.arm[0];
-        let e_ddot = centripetal(follower, q_dot) - centripetal(cam, q_dot) - motion.arm[1];
-        let [turn, turn_rate] = motion.tangent;
-        e_ddot.dot(&w) + 2.0 * turn * e_dot.dot(&across) + turn_rate * e.dot(&across)
-            - turn * turn * e.dot(&w)
     }
 
     /// Returns whether a roller's radius is positive.
