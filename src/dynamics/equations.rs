@@ -8,6 +8,7 @@ use super::given::Given;
 use super::passive::{Passive, PassiveForces};
 use super::state::FreeState;
 use super::triangular::{ascend, descend};
+use super::turns::Turns;
 use super::watch::{Verdict, Watch};
 use crate::kinematics::{
     Blocked, Curve, Direction, EquationsOfMotion, ForceParts, Forces, KnownMotion, Path, Pose,
@@ -50,6 +51,7 @@ pub(super) struct Equations {
     /// Rates of q for the reactions of joints with friction.
     rates: Rates,
     pub(super) watch: Watch,
+    pub(super) turns: Turns,
     /// The trial point at which the equations are.
     pub(super) point: Point,
     /// The last point accepted, with the solver's pose and choices there.
@@ -128,6 +130,14 @@ impl Equations {
             factor: DMatrix::zeros(count, count),
             accelerations: vec![0.0; count],
             watch: Watch::new(&passive),
+            turns: Turns::new(
+                solver
+                    .mechanism()
+                    .forces
+                    .iter()
+                    .map(|f| f.load.corners())
+                    .sum(),
+            ),
             passive,
             is_plain: solver.pose().drivers.len() < 2 && !solver.has_ends_of_curves(),
             rates: Rates::new(unknowns),
@@ -157,6 +167,7 @@ impl Equations {
     pub(super) fn accept(&mut self, solver: &Solver) {
         self.accepted.copy_from(&self.point);
         self.watch.accept(solver.pose().time);
+        self.turns.accept(self.forces.corners());
         solver.save(&mut self.pose);
         solver.copy_choices(&mut self.choices);
         self.is_astray = false;
@@ -171,7 +182,9 @@ impl Equations {
         self.point.work = state.integrator.x[2 * self.freedoms.len()];
         self.passive.resume(&state.modes);
         self.watch.begin();
+        self.turns.begin();
         self.accept(solver);
+        self.turns.accept(&state.corners);
     }
 
     /// Solves accelerations and passive forces at the solver's pose for the rates and inputs of a
@@ -206,7 +219,20 @@ impl Equations {
     pub(super) fn judge(&mut self, solver: &Solver) -> Verdict {
         let times = [self.pose.time, solver.pose().time];
         let points = [&*self.accepted.passive, &*self.point.passive];
-        self.watch.judge(&self.passive, times, points)
+        let verdict = self.watch.judge(&self.passive, times, points);
+        let Some(turn) = self.turns.judge(times, self.forces.corners()) else {
+            return verdict;
+        };
+        self.watch.is_event = false;
+        match verdict {
+            Verdict::Ends(time) => Verdict::Ends(time.min(turn)),
+            Verdict::Lasts | Verdict::Unclear => Verdict::Ends(turn),
+        }
+    }
+
+    /// Returns whether the motion ceases to be smooth at the accepted point.
+    pub(super) fn is_at_event(&self) -> bool {
+        self.watch.is_event || self.turns.is_event
     }
 
     /// Proves that one motion joins the accepted pose and that at the present point, and that no gap closes

@@ -71,6 +71,7 @@ mod statics;
 mod told;
 mod trials;
 mod triangular;
+mod turns;
 mod variations;
 mod watch;
 

@@ -191,6 +191,7 @@ impl FreeMotion {
             loads: accepted.loads.clone(),
             modes: self.equations.passive.state().collect(),
             passive: accepted.passive.clone(),
+            corners: self.equations.turns.accepted.clone(),
             energies: self.energies(),
         }
     }
@@ -206,6 +207,7 @@ impl FreeMotion {
         let modes = state.modes.iter_mut().zip(self.equations.passive.state());
         modes.for_each(|(to, mode)| *to = mode);
         state.passive.copy_from_slice(&accepted.passive);
+        state.corners.clone_from(&self.equations.turns.accepted);
         state.energies = self.energies();
     }
 
@@ -473,13 +475,17 @@ impl FreeMotion {
                 .advance(&mut trials, goal)
                 .map_err(Error::from)
             {
-                Ok(_) if self.equations.watch.is_event => {
-                    if !self.equations.directions.is_empty() {
+                Ok(_) if self.equations.is_at_event() => {
+                    // A corner of a force bends the changes along directions, which go on.
+                    let Equations { watch, turns, .. } = &self.equations;
+                    let jumps = watch.is_event || turns.jumps;
+                    if jumps && !self.equations.directions.is_empty() {
                         return Err(Error::NoDerivatives {
                             time: solver.pose().time,
                         });
                     }
                     self.x.copy_from_slice(&self.integrator.state().x);
+                    self.equations.turns.begin();
                     self.settle(solver, given)?;
                     self.go_on(solver, given)?;
                     if ends_at_event {
@@ -550,8 +556,17 @@ impl FreeMotion {
     /// the modes of passive forces last.
     #[must_use]
     pub fn event_indicator(&self, index: usize) -> f64 {
+        let Equations {
+            passive,
+            point,
+            turns,
+            forces,
+            ..
+        } = &self.equations;
         let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
-        let Equations { passive, point, .. } = &self.equations;
+        if let Some(turn) = index.checked_sub(passive.list.len() * FUNCTIONS) {
+            return turns.indicator(turn, forces.corners());
+        }
         let function = passive.function(force, &point.passive[force], side);
         function.map_or(1.0, |function| function.indicator())
     }

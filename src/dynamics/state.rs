@@ -2,7 +2,7 @@
 
 use super::integrator::State;
 use super::passive::{Mode, Passive};
-use crate::mechanism::Jet;
+use crate::mechanism::{Corner, Jet};
 
 /// All numbers on which the motion depends besides the solver's pose and choices: a motion that is
 /// given them goes on with the same bits.
@@ -23,6 +23,8 @@ pub struct FreeState {
     pub modes: Vec<(Mode, f64)>,
     /// Each passive force there.
     pub passive: Vec<Passive>,
+    /// Arguments there of functions on whose points forces have corners or jump.
+    pub corners: Vec<Corner>,
     /// Energy of the bodies without that of springs there, its kinetic part, and that energy when the
     /// work was zero \[J\].
     pub energies: [f64; 3],

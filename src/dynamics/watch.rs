@@ -208,6 +208,9 @@ pub fn event_indicators(mechanism: &Mechanism) -> Vec<usize> {
     let passive = forces
         .filter(|(_, force)| matches!(force.load, Load::Passive { .. }) || is_elastic(&force.load));
     let indicators = passive.flat_map(|(index, _)| [index; FUNCTIONS]);
+    let forces = mechanism.forces.iter().enumerate();
+    let turns = forces.flat_map(|(index, force)| vec![index; 2 * force.load.corners()]);
+    let indicators = indicators.chain(turns);
     match mechanism.has_freedoms() {
         true => indicators.collect(),
         false => Vec::new(),

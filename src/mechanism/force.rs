@@ -1,7 +1,9 @@
 //! Forces on a mechanism, besides gravity.
 
 use super::friction::FrictionLaw;
-use super::{Coordinate, Expression, MarkerId, Mechanism, Number, ParameterId, Unit, Variable};
+use super::{
+    Coordinate, Expression, MarkerId, Mechanism, Number, Order, ParameterId, Signal, Unit, Variable,
+};
 
 /// Force on a mechanism.
 #[derive(Clone, Debug)]
@@ -99,7 +101,7 @@ impl PassiveCause {
 /// stop and of friction.
 #[derive(Clone, Debug, Default)]
 pub struct ForceLaw {
-    /// Part that is a function of time, of c and of its rate \[N or N m\].
+    /// Part that is a function of time, of c and its rate, and of what moves elsewhere \[N or N m\].
     pub value: Option<Expression>,
     /// Spring.
     pub spring: Option<Spring>,
@@ -222,19 +224,19 @@ impl Spring {
 }
 
 impl ForceLaw {
-    /// Returns the force f \[N or N m\] at a time \[s\], for a value and a rate of the
-    /// coordinate. Allocates nothing.
+    /// Returns the force f \[N or N m\] for a value and a rate of the coordinate; `other` gives the
+    /// variables but these: time, inputs and signals. Allocates nothing.
     pub fn evaluate<N: Number>(
         &self,
         parameter: &impl Fn(ParameterId) -> N,
-        time: N,
+        other: &impl Fn(Variable) -> N,
         [position, velocity]: [N; 2],
     ) -> N {
         let mut force = match &self.value {
             Some(value) => value.evaluate_at(parameter, &|variable| match variable {
                 Variable::Position => position,
                 Variable::Velocity => velocity,
-                _ => time,
+                _ => other(variable),
             }),
             None => N::constant(0.0),
         };
@@ -457,6 +459,35 @@ impl Load {
             },
             Self::Marker { law, .. } => law.iter().flatten().collect(),
         }
+    }
+
+    /// Returns the expressions of its size that depend on what moves.
+    pub fn moving_expressions(&self) -> impl Iterator<Item = &Expression> {
+        let (along, at) = match self {
+            Self::Coordinate { law, .. } => (law.as_ref().and_then(|law| law.value.as_ref()), None),
+            Self::Passive { .. } => (None, None),
+            Self::Marker { law, .. } => (None, law.as_ref()),
+        };
+        along.into_iter().chain(at.into_iter().flatten())
+    }
+
+    /// Returns the number of arguments of functions on whose points its size has corners or jumps.
+    #[must_use]
+    pub fn corners(&self) -> usize {
+        let mut count = 0;
+        for expression in self.moving_expressions() {
+            expression.visit_corners(&|_| 0.0, &|_| 0.0, &mut |_| count += 1);
+        }
+        count
+    }
+
+    /// Returns the signals on which its size depends, besides its own coordinate; one may come twice.
+    pub fn signals(&self) -> impl Iterator<Item = (Signal, Order)> {
+        let variables = self.moving_expressions().flat_map(Expression::variables);
+        variables.filter_map(|variable| match variable {
+            Variable::Signal(signal, order) => Some((signal, order)),
+            _ => None,
+        })
     }
 }
 

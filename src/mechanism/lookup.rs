@@ -1,6 +1,6 @@
 //! Search for parts of a mechanism by name.
 
-use super::expression::Scope;
+use super::expression::{FunctionNames, Scope, Signature};
 use super::names::NameTable;
 use super::{BodyId, DriverId, Expression, ExpressionError, Mechanism, ParameterId, Variable};
 
@@ -26,7 +26,7 @@ impl Mechanism {
         Some(DriverId(index))
     }
 
-    /// Parses an expression over this mechanism's parameters and over `variable`.
+    /// Parses an expression over this mechanism's parameters, its functions and `variable`.
     ///
     /// # Errors
     ///
@@ -38,10 +38,19 @@ impl Mechanism {
     ) -> Result<Expression, ExpressionError> {
         let names = self.parameters.iter().map(|p| p.name.as_str());
         let parameters: NameTable<'_, ParameterId> = names.zip((0..).map(ParameterId)).collect();
+        let functions = self.functions.list().iter().enumerate();
+        let known = functions.map(|(place, function)| {
+            let arguments = Some(function.arguments);
+            (function.name.as_str(), Signature { place, arguments })
+        });
+        let functions = FunctionNames {
+            known: known.collect(),
+            list: self.functions.clone(),
+            are_callable: true,
+        };
         let scope = Scope {
-            parameters: &parameters,
-            variables: variable.as_slice(),
-            moving: None,
+            functions: Some(&functions),
+            ..Scope::new(&parameters, variable.as_slice())
         };
         Expression::parse(text, scope)
     }

@@ -10,6 +10,7 @@
 //! | `joint` | [`Joint`]: its kinds, and what it is asked whatever its kind |
 //! | `curve` | [`Curve`]: along which a point moves |
 //! | `rope` | [`Rope`]: points and pulleys that a rope runs over |
+//! | `function` | [`Function`]: a function of the file, which expressions call |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
 //! | `coupling` | [`CoordinateEquation`]: an equation between coordinates |
@@ -38,6 +39,7 @@ mod expression;
 mod force;
 mod force_quantity;
 mod friction;
+mod function;
 mod id;
 mod joint;
 mod lookup;
@@ -78,9 +80,14 @@ pub use force::{
 };
 pub use force_quantity::ForceQuantity;
 pub use friction::{Bearing, BearingShape, FrictionLaw};
+pub(crate) use function::MOST_MOVING_POINTS;
+pub use function::{
+    CalledPoints, Corner, Function, FunctionBody, Functions, Grid, Interpolation, MOST_ARGUMENTS,
+    PointFunction,
+};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};
-pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable, not_finite};
+pub use motion::{Law, Motion, MotionInForce, not_finite};
 pub use names::{did_you_mean, help, is_identifier, similar_identifier};
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::{DerivedParameter, Parameter};
@@ -128,6 +135,8 @@ pub struct Mechanism {
     /// Parameters whose value uses other parameters, in an order in which each comes after those
     /// it uses.
     pub derivation_order: Vec<ParameterId>,
+    /// Functions that expressions call.
+    pub functions: Functions,
     /// Moving bodies.
     pub bodies: Vec<Body>,
     /// All markers: those of ground first, then body by body.
@@ -277,6 +286,18 @@ impl Driver {
         match self.source {
             DriverSource::Free { velocity, .. } => velocity,
             DriverSource::Input { .. } | DriverSource::Motion(_) => 0.0,
+        }
+    }
+
+    /// Returns the coordinate that the file drives or sets free, where the motion may be integrated in
+    /// another one.
+    #[must_use]
+    pub fn named(&self) -> &Coordinate {
+        match &self.source {
+            DriverSource::Free {
+                named: Some(named), ..
+            } => named,
+            _ => &self.coordinate,
         }
     }
 

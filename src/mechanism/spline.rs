@@ -1,17 +1,28 @@
 //! Cubic splines through given points: twice continuously differentiable.
 
-use super::Number;
+use super::{Interval, Number};
 
-/// End conditions of a spline and of its motion.
+/// End conditions of a spline, and what a function through points is outside them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    /// At rest: the slope is zero at both ends, the end values hold outside.
+    /// At rest: the slope of a spline is zero at both ends, the end values hold outside.
     Clamped,
     /// The second derivative is zero at both ends; outside it goes on straight.
     Natural,
     /// It repeats. Where the last value differs from the first, each period starts from where
     /// the one before ended.
     Periodic,
+    /// Outside it goes on with the slope that it has at the end; a spline is natural.
+    Linear,
+    /// Outside it is zero; a spline is natural.
+    Zero,
+}
+
+impl Ends {
+    /// Returns whether the second derivative of a spline is zero at its ends.
+    fn are_natural(self) -> bool {
+        matches!(self, Self::Natural | Self::Linear | Self::Zero)
+    }
 }
 
 /// Cubic spline on plain numbers or on numbers with derivatives.
@@ -72,11 +83,67 @@ impl<N: Number> Spline<N> {
     }
 
     /// Finds the second derivatives M for which the first is continuous.
+    pub fn fit(&mut self) {
+        let Self {
+            knots,
+            values,
+            moments,
+            upper,
+            corner,
+            ends,
+        } = self;
+        let points = Points {
+            knots,
+            values,
+            ends: *ends,
+        };
+        points.fit(moments, [upper, corner]);
+    }
+
+    /// Returns the segment that contains `x`, the nearest one if `x` is beyond the ends.
+    #[must_use]
+    pub fn segment(&self, x: f64) -> usize {
+        let inner = &self.knots[1..self.knots.len() - 1];
+        inner.partition_point(|knot| knot.real() <= x)
+    }
+
+    /// Returns the value at `x`, by the cubic of a segment.
+    #[must_use]
+    pub fn on_segment(&self, segment: usize, x: N) -> N {
+        self.part(segment).value(x)
+    }
+
+    /// Returns the first derivative at `x`, by the cubic of a segment.
+    #[must_use]
+    pub fn slope_on_segment(&self, segment: usize, x: N) -> N {
+        self.part(segment).slope(x)
+    }
+
+    /// Returns the second and third derivatives at `x`, by the cubic of a segment.
+    #[must_use]
+    pub fn curvature_on_segment(&self, segment: usize, x: N) -> [N; 2] {
+        let Segment {
+            abscissas, moments, ..
+        } = self.part(segment);
+        let third = (moments[1] - moments[0]) / (abscissas[1] - abscissas[0]);
+        [moments[0] + (x - abscissas[0]) * third, third]
+    }
+}
+
+/// Points through which a spline is laid.
+pub(in crate::mechanism) struct Points<'a, N> {
+    pub(in crate::mechanism) knots: &'a [N],
+    pub(in crate::mechanism) values: &'a [N],
+    pub(in crate::mechanism) ends: Ends,
+}
+
+impl<N: Number> Points<'_, N> {
+    /// Finds the second derivatives M for which the first is continuous.
     ///
     /// The matrix of their equations, one per knot, is diagonally dominant, so that elimination
     /// needs no pivots. That of a periodic spline has two more entries, in its corners: elimination
     /// carries the column of the last unknown along and reduces the last row step by step.
-    pub fn fit(&mut self) {
+    pub(in crate::mechanism) fn fit(&self, moments: &mut [N], [uppers, corners]: [&mut [N]; 2]) {
         let zero = N::constant(0.0);
         let is_periodic = self.ends == Ends::Periodic;
         // The last knot of a period is the first one of the next.
@@ -94,30 +161,29 @@ impl<N: Number> Spline<N> {
                 last_entry += last_lower;
             }
             if row > 0 {
-                pivot -= lower * self.upper[row - 1];
-                corner -= lower * self.corner[row - 1];
-                side -= lower * self.moments[row - 1];
+                pivot -= lower * uppers[row - 1];
+                corner -= lower * corners[row - 1];
+                side -= lower * moments[row - 1];
             }
-            self.upper[row] = upper / pivot;
-            self.corner[row] = corner / pivot;
-            self.moments[row] = side / pivot;
-            last_diagonal -= last_entry * self.corner[row];
-            last_side -= last_entry * self.moments[row];
-            last_entry = zero - last_entry * self.upper[row];
+            uppers[row] = upper / pivot;
+            corners[row] = corner / pivot;
+            moments[row] = side / pivot;
+            last_diagonal -= last_entry * corners[row];
+            last_side -= last_entry * moments[row];
+            last_entry = zero - last_entry * uppers[row];
         }
         // A single segment repeats as a straight line.
-        self.moments[last] = if last == 0 {
+        moments[last] = if last == 0 {
             zero
         } else {
             last_side / last_diagonal
         };
         for row in (0..last).rev() {
-            self.moments[row] = self.moments[row]
-                - self.upper[row] * self.moments[row + 1]
-                - self.corner[row] * self.moments[last];
+            moments[row] =
+                moments[row] - uppers[row] * moments[row + 1] - corners[row] * moments[last];
         }
         if is_periodic {
-            self.moments[last + 1] = self.moments[0];
+            moments[last + 1] = moments[0];
         }
     }
 
@@ -133,7 +199,7 @@ impl<N: Number> Spline<N> {
             Ends::Periodic => [Some((knot + segments - 1) % segments), Some(knot)],
             _ => [knot.checked_sub(1), Some(knot).filter(|k| *k < segments)],
         };
-        if self.ends == Ends::Natural && beside.contains(&None) {
+        if self.ends.are_natural() && beside.contains(&None) {
             return [zero, N::constant(1.0), zero, zero];
         }
         let [left, right] = beside.map(|k| k.map_or(zero, |k| self.width(k)));
@@ -149,43 +215,152 @@ impl<N: Number> Spline<N> {
     fn slope(&self, segment: usize) -> N {
         (self.values[segment + 1] - self.values[segment]) / self.width(segment)
     }
+}
+
+/// The stretch from one point of a spline to the next.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::mechanism) struct Segment<N> {
+    /// At both ends.
+    pub(in crate::mechanism) abscissas: [N; 2],
+    /// At both ends.
+    pub(in crate::mechanism) ordinates: [N; 2],
+    /// Second derivatives at both ends.
+    pub(in crate::mechanism) moments: [N; 2],
+}
+
+impl<N: Number> Segment<N> {
+    /// Returns the value at `x`, by the cubic.
+    pub(in crate::mechanism) fn value(&self, x: N) -> N {
+        let [[from, to], [low, high], [before, after]] =
+            [self.abscissas, self.ordinates, self.moments];
+        let width = to - from;
+        let b = (x - from) / width;
+        let a = (to - x) / width;
+        let bend = (a * a * a - a) * before + (b * b * b - b) * after;
+        a * low + b * high + bend * width * width / N::constant(6.0)
+    }
+
+    /// Returns the first derivative at `x`, by the cubic.
+    pub(in crate::mechanism) fn slope(&self, x: N) -> N {
+        let [[from, to], [low, high], [before, after]] =
+            [self.abscissas, self.ordinates, self.moments];
+        let (half, sixth) = (N::constant(0.5), N::constant(1.0 / 6.0));
+        let width = to - from;
+        let (left, right) = (x - from, to - x);
+        let bend = left * left * after - right * right * before;
+        let chord = (high - low) / width;
+        chord + half * bend / width - sixth * width * (after - before)
+    }
+}
+
+/// Points with the second derivatives of a spline through them, which a function through points is
+/// evaluated on.
+pub(in crate::mechanism) trait Knots<N: Number> {
+    /// Returns the number of points.
+    fn count(&self) -> usize;
+
+    /// Returns the abscissa of a point.
+    fn abscissa(&self, point: usize) -> N;
+
+    /// Returns the ordinate of a point.
+    fn ordinate(&self, point: usize) -> N;
+
+    /// Returns the stretch from a point to the next one.
+    fn part(&self, segment: usize) -> Segment<N>;
 
     /// Returns the segment that contains `x`, the nearest one if `x` is beyond the ends.
-    #[must_use]
-    pub fn segment(&self, x: f64) -> usize {
-        let inner = &self.knots[1..self.knots.len() - 1];
-        inner.partition_point(|knot| knot.real() <= x)
+    fn segment_of(&self, x: f64) -> usize;
+
+    /// Returns whether all points are single numbers.
+    fn are_single(&self) -> bool {
+        (0..self.count()).all(|point| self.abscissa(point).is_single())
     }
 
-    /// Returns the value at `x`, by the cubic of a segment.
-    #[must_use]
-    pub fn on_segment(&self, segment: usize, x: N) -> N {
-        let k = segment;
-        let width = self.width(k);
-        let b = (x - self.knots[k]) / width;
-        let a = (self.knots[k + 1] - x) / width;
-        let bend = (a * a * a - a) * self.moments[k] + (b * b * b - b) * self.moments[k + 1];
-        a * self.values[k] + b * self.values[k + 1] + bend * width * width / N::constant(6.0)
+    /// Returns whether each abscissa is larger than the one before, whatever single numbers they are.
+    fn rise(&self) -> bool {
+        let mut segments = 0..self.count() - 1;
+        segments.all(|segment| {
+            let Segment { abscissas, .. } = self.part(segment);
+            abscissas[0].range().high < abscissas[1].range().low
+        })
     }
 
-    /// Returns the first derivative at `x`, by the cubic of a segment.
-    #[must_use]
-    pub fn slope_on_segment(&self, segment: usize, x: N) -> N {
-        let k = segment;
-        let (half, sixth) = (N::constant(0.5), N::constant(1.0 / 6.0));
-        let width = self.width(k);
-        let (left, right) = (x - self.knots[k], self.knots[k + 1] - x);
-        let bend = left * left * self.moments[k + 1] - right * right * self.moments[k];
-        self.slope(k) + half * bend / width
-            - sixth * width * (self.moments[k + 1] - self.moments[k])
+    /// Returns the segments that a range may meet.
+    fn segments_in(&self, _range: Interval) -> std::ops::Range<usize> {
+        0..self.count() - 1
+    }
+}
+
+impl<N: Number> Knots<N> for Spline<N> {
+    fn count(&self) -> usize {
+        self.knots.len()
     }
 
-    /// Returns the second and third derivatives at `x`, by the cubic of a segment.
-    #[must_use]
-    pub fn curvature_on_segment(&self, segment: usize, x: N) -> [N; 2] {
-        let k = segment;
-        let third = (self.moments[k + 1] - self.moments[k]) / self.width(k);
-        [self.moments[k] + (x - self.knots[k]) * third, third]
+    fn abscissa(&self, point: usize) -> N {
+        self.knots[point]
+    }
+
+    fn ordinate(&self, point: usize) -> N {
+        self.values[point]
+    }
+
+    fn part(&self, segment: usize) -> Segment<N> {
+        let ends = |of: &[N]| [of[segment], of[segment + 1]];
+        Segment {
+            abscissas: ends(&self.knots),
+            ordinates: ends(&self.values),
+            moments: ends(&self.moments),
+        }
+    }
+
+    fn segment_of(&self, x: f64) -> usize {
+        self.segment(x)
+    }
+}
+
+/// Points that no parameter moves, on any numbers.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::mechanism) struct Fixed<'a>(pub(in crate::mechanism) &'a Spline<f64>);
+
+impl<N: Number> Knots<N> for Fixed<'_> {
+    fn count(&self) -> usize {
+        self.0.knots.len()
+    }
+
+    fn abscissa(&self, point: usize) -> N {
+        N::constant(self.0.knots[point])
+    }
+
+    fn ordinate(&self, point: usize) -> N {
+        N::constant(self.0.values[point])
+    }
+
+    fn part(&self, segment: usize) -> Segment<N> {
+        let part = self.0.part(segment);
+        let on_numbers = |of: [f64; 2]| of.map(N::constant);
+        Segment {
+            abscissas: on_numbers(part.abscissas),
+            ordinates: on_numbers(part.ordinates),
+            moments: on_numbers(part.moments),
+        }
+    }
+
+    fn segment_of(&self, x: f64) -> usize {
+        self.0.segment(x)
+    }
+
+    fn are_single(&self) -> bool {
+        true
+    }
+
+    fn rise(&self) -> bool {
+        true
+    }
+
+    fn segments_in(&self, range: Interval) -> std::ops::Range<usize> {
+        // A point belongs to the segment that begins there, and to the one before.
+        let first = self.0.segment(range.low).saturating_sub(1);
+        first..self.0.segment(range.high) + 1
     }
 }
 

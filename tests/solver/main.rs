@@ -16,6 +16,7 @@ mod curve;
 mod drawn;
 mod forces;
 mod free;
+mod functions;
 mod integrator;
 mod machines;
 mod modes;

@@ -344,6 +344,10 @@ impl<'a> DependencyTable<'a> {
             if let Some(coordinate) = load.coordinate() {
                 origins.extend(&structure.coordinate_dependencies(mechanism, coordinate));
             }
+            for (signal, order) in load.signals() {
+                let signal = Quantity::Output(OutputSource::Signal(signal, order));
+                origins.extend(&self.origins(signal));
+            }
             for expression in load.expressions() {
                 origins.add_expression(mechanism, expression);
             }

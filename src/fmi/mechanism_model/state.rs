@@ -12,7 +12,7 @@ use crate::kinematics::{
     Alignment, BlockChoices, Crossing, Member, Origin, PivotOrder, Polynomial, Pose, Progress,
     Relation, SolverChoices,
 };
-use crate::mechanism::{BodyId, DriverId, Extrapolation, Jet, RateSource};
+use crate::mechanism::{BodyId, Corner, DriverId, Extrapolation, Jet, RateSource};
 
 /// Largest residual of a pose that is read, relative to its largest coordinate in characteristic
 /// lengths and radians. Newton leaves 1e-15; the next step closes a pose within this tolerance.
@@ -229,6 +229,7 @@ fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unread
         energies,
         modes,
         passive,
+        corners,
     } = free;
     integrator.visit(|word| codec.word(word))?;
     codec.finite(tolerance)?;
@@ -252,6 +253,15 @@ fn visit_free(free: &mut FreeState, codec: &mut impl Codec) -> Result<(), Unread
         let reals = reals.into_iter().chain(&mut coordinate.derivatives);
         codec.each(reals.chain(bounds).chain(roundings), Codec::real)?;
         codec.one_of(is_dependent, &[false, true])?;
+    }
+    for Corner {
+        argument,
+        nearest,
+        jumps,
+    } in corners
+    {
+        codec.each([argument].into_iter().chain(nearest), Codec::real)?;
+        codec.one_of(jumps, &[false, true])?;
     }
     Ok(())
 }

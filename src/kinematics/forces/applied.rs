@@ -3,19 +3,33 @@
 use std::sync::Arc;
 
 use crate::kinematics::constraint::configuration::Configuration;
-use crate::kinematics::constraint::{Constraint, Gradient};
+use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::kinematics::system::System;
 use crate::mechanism::{
-    BodyId, Coordinate, CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId,
+    BodyId, Coordinate, CoordinateKind, Corner, Expression, ForceLaw, Load, MarkerId, Mechanism,
+    Number, ParameterId, Signal, Variable,
 };
 
 /// The forces of a mechanism, ready to be evaluated.
 #[derive(Debug)]
 pub(super) struct AppliedForces {
     pub(super) list: Vec<AppliedForce>,
+    /// What the sizes depend on that moves elsewhere.
+    pub(super) seen: Vec<Seen>,
+    /// Value and rate of each.
+    seen_values: Vec<[f64; 2]>,
+    /// Arguments of functions with corners or jumps, at the last pose.
+    pub(super) corners: Vec<Corner>,
     /// Work space.
     gradient: Gradient,
+}
+
+/// A coordinate on which the sizes of forces depend.
+#[derive(Debug)]
+pub(super) struct Seen {
+    pub(super) signal: Signal,
+    pub(super) relation: Box<dyn Constraint>,
 }
 
 /// One force.
@@ -24,6 +38,8 @@ pub(super) struct AppliedForce {
     pub(super) place: Place,
     /// Index of its first load among all [`loads`](super::Forces::loads), if it has no law.
     pub(super) input: Option<usize>,
+    /// Whether functions have corners or jumps in its size.
+    has_corners: bool,
 }
 
 /// Place of a force.
@@ -41,6 +57,24 @@ pub(super) struct Circumstances<'a, N, P> {
     pub(super) time: N,
     /// All loads.
     pub(super) inputs: &'a [N],
+    /// What moves elsewhere, with value and rate.
+    pub(super) seen: &'a [Seen],
+    pub(super) seen_values: &'a [[N; 2]],
+}
+
+impl<N: Number, P> Circumstances<'_, N, P> {
+    /// Returns the value of a variable that is no coordinate of the force itself.
+    fn variable(&self, which: Variable) -> N {
+        match which {
+            Variable::Time => self.time,
+            Variable::Signal(signal, order) => {
+                let mut all = self.seen.iter().zip(self.seen_values);
+                let found = all.find(|(seen, _)| seen.signal == signal);
+                found.map_or_else(N::unknown, |(_, values)| values[order as usize])
+            }
+            _ => N::unknown(),
+        }
+    }
 }
 
 impl AppliedForce {
@@ -56,7 +90,8 @@ impl AppliedForce {
         let Some(law) = law else {
             return [self.input.map_or(zero, |first| around.inputs[first]), zero];
         };
-        let size = law.evaluate(around.parameter, around.time, coordinate);
+        let variable = |which| around.variable(which);
+        let size = law.evaluate(around.parameter, &variable, coordinate);
         let mut energy = law.spring.as_ref().map_or(zero, |spring| {
             let [stiffness, extension] = spring.evaluate(around.parameter, coordinate[0]);
             stiffness * extension.square() * 0.5
@@ -74,9 +109,10 @@ impl AppliedForce {
         around: &Circumstances<'_, N, P>,
     ) -> [N; 3] {
         match (law, self.input) {
-            (Some(law), _) => law
-                .each_ref()
-                .map(|component| component.evaluate(around.parameter, around.time)),
+            (Some(law), _) => law.each_ref().map(|component| {
+                let variable = |which| around.variable(which);
+                component.evaluate_at(around.parameter, &variable)
+            }),
             (None, Some(first)) => [0, 1, 2].map(|k| around.inputs[first + k]),
             (None, None) => [N::constant(0.0); 3],
         }
@@ -128,9 +164,14 @@ impl AppliedForces {
                 Load::Marker { marker, axes, .. } => Place::Marker(*marker, *axes),
             },
             input,
+            has_corners: force.load.moving_expressions().any(Expression::has_corners),
         });
+        let seen = seen(system.mechanism());
         Self {
             list: list.collect(),
+            seen_values: vec![[0.0; 2]; seen.len()],
+            seen,
+            corners: Vec::new(),
             gradient: Gradient::new(),
         }
     }
@@ -146,11 +187,24 @@ impl AppliedForces {
         mechanism: &Mechanism,
         at: &Configuration,
         q_dot: &[f64],
-        around: &Circumstances<'_, f64, P>,
+        (parameter, time, inputs): (&P, f64, &[f64]),
         sizes: &mut [[f64; 3]],
         demand: &mut [f64],
     ) -> Result<f64, Error> {
         let mut energy = 0.0;
+        for (Seen { relation, .. }, values) in self.seen.iter().zip(&mut self.seen_values) {
+            self.gradient.clear();
+            let value = relation.value_and_gradient(at, &mut self.gradient);
+            *values = [value, self.gradient.dot(q_dot)];
+        }
+        self.corners.clear();
+        let around = &Circumstances {
+            parameter,
+            time,
+            inputs,
+            seen: &self.seen,
+            seen_values: &self.seen_values,
+        };
         for ((applied, definition), size) in self.list.iter().zip(&mechanism.forces).zip(sizes) {
             let fault = |reason| {
                 Err(Error::NoForce {
@@ -174,6 +228,9 @@ impl AppliedForces {
                     self.gradient.clear();
                     relation.gradient(at, &mut self.gradient);
                     let coordinate = [value, self.gradient.dot(q_dot)];
+                    if applied.has_corners {
+                        note_corners(&definition.load, coordinate, around, &mut self.corners);
+                    }
                     let [force, stored] = applied.along(law, coordinate, around);
                     if !(force + stored).is_finite() {
                         return fault("has no finite value here");
@@ -186,6 +243,10 @@ impl AppliedForces {
                 }
                 (Place::Marker(marker, axes), Load::Marker { law, .. }) => {
                     *size = applied.at_marker(law.as_ref(), around);
+                    if applied.has_corners {
+                        let none = [f64::NAN; 2];
+                        note_corners(&definition.load, none, around, &mut self.corners);
+                    }
                     if !size.iter().sum::<f64>().is_finite() {
                         return fault("has no finite value here");
                     }
@@ -201,4 +262,46 @@ impl AppliedForces {
         }
         Ok(energy)
     }
+}
+
+/// Adds the arguments of functions with corners or jumps in the size of a force.
+fn note_corners<P: Fn(ParameterId) -> f64>(
+    load: &Load,
+    [position, velocity]: [f64; 2],
+    around: &Circumstances<'_, f64, P>,
+    corners: &mut Vec<Corner>,
+) {
+    let variable = |which| match which {
+        Variable::Position => position,
+        Variable::Velocity => velocity,
+        other => around.variable(other),
+    };
+    for expression in load.moving_expressions() {
+        let parameter = around.parameter;
+        expression.visit_corners(parameter, &variable, &mut |corner| corners.push(corner));
+    }
+}
+
+/// Returns the coordinates of the signals on which sizes of forces depend, each once.
+fn seen(mechanism: &Mechanism) -> Vec<Seen> {
+    let mut seen: Vec<Seen> = Vec::new();
+    for (signal, _) in mechanism
+        .forces
+        .iter()
+        .flat_map(|force| force.load.signals())
+    {
+        if seen.iter().any(|known| known.signal == signal) {
+            continue;
+        }
+        let coordinate = match signal {
+            Signal::Measure(index) => &mechanism.measures[index].coordinate,
+            Signal::Motion(driver) => mechanism.drivers[driver.index()].named(),
+            Signal::Body(..) | Signal::Marker(..) => {
+                unreachable!("the reader admits coordinates alone")
+            }
+        };
+        let relation = of_coordinate(coordinate);
+        seen.push(Seen { signal, relation });
+    }
+    seen
 }

@@ -359,10 +359,19 @@ impl Forces {
         let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
         let inputs = motion.inputs.iter().zip(sensitivity.inputs);
         let inputs: Vec<_> = inputs.map(|(&is, &by)| Dual::new(is, [by])).collect();
+        let seen = self.applied.seen.iter();
+        let seen_values: Vec<_> = seen
+            .map(|seen| {
+                let value = seen.relation.along(&at);
+                [value.value, value.first()]
+            })
+            .collect();
         let around = Circumstances {
             parameter: &parameter,
             time: Dual::new(state.pose.time, [sensitivity.time]),
             inputs: &inputs,
+            seen: &self.applied.seen,
+            seen_values: &seen_values,
         };
         let mut demand = vec![zero; state.pose.q.len()];
         let mut sizes = Vec::new();

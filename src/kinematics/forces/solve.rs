@@ -3,7 +3,7 @@
 use std::iter;
 use std::sync::Arc;
 
-use super::applied::{AppliedForces, Circumstances};
+use super::applied::AppliedForces;
 use super::inertial::{DriverLoads, Masses, by_body};
 use super::results::{DriverForces, Results};
 use super::self_stress::SelfStresses;
@@ -16,7 +16,7 @@ use crate::kinematics::plan::{BlockState, JacobianFactors};
 use crate::kinematics::singular::{Kind, NearPoint, Place, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::mechanism::{
-    Driver, DriverId, ForceQuantity, Indeterminate, Jet, Load, Mechanism, ParameterId,
+    Corner, Driver, DriverId, ForceQuantity, Indeterminate, Jet, Load, Mechanism, ParameterId,
 };
 
 /// The forces of a mechanism with dynamics at one pose.
@@ -146,6 +146,13 @@ impl Forces {
             ForceQuantity::KineticEnergy => found.energies[0],
             ForceQuantity::PotentialEnergy => found.energies[1],
         }
+    }
+
+    /// Returns the arguments of functions on whose points the sizes of forces have corners or jump, at the
+    /// pose for which these were evaluated last.
+    #[must_use]
+    pub fn corners(&self) -> &[Corner] {
+        &self.applied.corners
     }
 
     /// Returns force and torque that a joint exerts at its second marker \[N and N m\].
@@ -308,16 +315,12 @@ impl Forces {
             return Ok(());
         }
         let parameters = &state.pose.parameters;
-        let around = Circumstances {
-            parameter: &|p: ParameterId| parameters[p.index()],
-            time: state.pose.time,
-            inputs,
-        };
+        let parameter = |p: ParameterId| parameters[p.index()];
         self.results.energies[1] = self.applied.apply(
             &self.mechanism,
             &state.at,
             q_dot,
-            &around,
+            (&parameter, state.pose.time, inputs),
             &mut self.results.sizes,
             &mut self.results.demand,
         )?;

@@ -17,7 +17,7 @@ pub(in crate::mechanism) struct ExpressionInForce {
     /// Step k computes number k + 1; number 0 is the variable.
     steps: [Step; MOST - 1],
     count: usize,
-    /// `None` if the expression takes more numbers than there are places.
+    /// `None` if the expression takes more numbers than there are places, or calls functions.
     result: Option<Operand>,
 }
 
@@ -76,6 +76,8 @@ impl ExpressionInForce {
                 Operation::Number(value) => Operand::Constant(value),
                 Operation::Parameter(id) => Operand::Constant(parameter(id)),
                 Operation::Variable(_) => Operand::Place(0),
+                // Functions are called by the expression itself.
+                Operation::Call(..) => return None,
                 _ => {
                     let operands = match operation.arity() {
                         1 => [stack[first]; 2],
@@ -241,7 +243,7 @@ impl Operation {
         let mut stack = [a, b];
         let mut height = self.arity();
         // Neither parameters nor variables have operands.
-        self.apply(&mut stack, &mut height, &(&|_| a, &|_| a));
+        self.apply(&mut stack, &mut height, &[], &(&|_| a, &|_| a));
         stack[0]
     }
 }

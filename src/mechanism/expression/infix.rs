@@ -39,7 +39,10 @@ impl Expression {
                     let (name, _) = known.find(|(_, known)| *known == operation)?;
                     format!("{}({})", function(name)?, operands[0])
                 }
-                Operation::Variable(_) | Operation::Binary(_) | Operation::Law => return None,
+                Operation::Variable(_)
+                | Operation::Binary(_)
+                | Operation::Law
+                | Operation::Call(..) => return None,
             };
             stack.push(text);
             if stack.iter().map(String::len).sum::<usize>() > LONGEST {

@@ -29,7 +29,10 @@ impl Expression {
             stack.push(linear(operation, &operands, count)?);
         }
         let expression = |part: Part| {
-            let expression = part.map_or_else(|| Self::constant(0.0), Self::new);
+            let expression = part.map_or_else(
+                || Self::constant(0.0),
+                |program| Self::new(program, &self.functions),
+            );
             (expression.height <= MAX_STACK).then_some(expression)
         };
         let Operand(parts) = stack.pop()?;
@@ -122,9 +125,10 @@ fn applied(operation: Operation, operands: &[&[Operation]]) -> Vec<Operation> {
     let mut program = operands.concat();
     program.push(operation);
     let is_number = |operand: &&[Operation]| matches!(operand, [Operation::Number(_)]);
-    // A law is no number of the program.
-    if operation != Operation::Law && operands.iter().all(is_number) {
-        let value = run::<f64, 3>(&program, &(&|_| f64::NAN, &|_| f64::NAN));
+    // A law and a function are no numbers of the program.
+    let is_called = matches!(operation, Operation::Law | Operation::Call(..));
+    if !is_called && operands.iter().all(is_number) {
+        let value = run::<f64, 3>(&program, &[], &(&|_| f64::NAN, &|_| f64::NAN));
         return vec![Operation::Number(value)];
     }
     program

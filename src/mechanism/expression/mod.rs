@@ -30,7 +30,7 @@ pub(super) use function::CONSTANTS;
 pub use function::constant;
 pub(super) use in_force::ExpressionInForce;
 pub use linear::LinearForm;
-pub(super) use parse::{LawOfCoupling, MovingNames, Parsed, Scope};
+pub(super) use parse::{FunctionNames, LawOfCoupling, MovingNames, Parsed, Scope, Signature};
 pub(super) use pieces::MOST_SWITCHES;
 pub use reserved::is_taken;
 pub(super) use reserved::taken;
@@ -39,6 +39,7 @@ pub(super) use seams::seams;
 pub use token::names_in;
 
 use super::force_quantity::ForceQuantity;
+use super::function::{Corner, Function, Functions};
 use super::number::{self, Interval, Jet3, Number, Unary};
 use super::{Order, ParameterId, Signal};
 
@@ -61,8 +62,8 @@ pub enum Variable {
     Force(ForceQuantity),
     /// A coordinate of a coupling, by its place among these.
     Coordinate(usize),
-    /// The argument of a coupling's law, `x` there.
-    Argument,
+    /// An argument of a function by its place, or that of a coupling's law, `x` there.
+    Argument(usize),
 }
 
 impl Variable {
@@ -78,7 +79,7 @@ impl Variable {
             Self::Signal(..) => "a signal",
             Self::Force(_) => "a force",
             Self::Coordinate(_) => "a coordinate",
-            Self::Argument => "x",
+            Self::Argument(_) => "x",
         }
     }
 }
@@ -128,6 +129,8 @@ pub struct Expression {
     height: usize,
     /// Parameters used, ascending, each once.
     parameters: Box<[ParameterId]>,
+    /// The functions of the mechanism, if it calls one.
+    functions: Functions,
 }
 
 /// Step of the program. It takes its operands off a stack and puts its result there.
@@ -146,6 +149,8 @@ enum Operation {
     Binary(Binary),
     /// The table of a coupling's law.
     Law,
+    /// A function of the file by its place, with its number of arguments.
+    Call(u32, u8),
 }
 
 impl Operation {
@@ -160,12 +165,19 @@ impl Operation {
             | Self::Divide
             | Self::Power
             | Self::Binary(_) => 2,
+            Self::Call(_, arguments) => arguments.into(),
         }
     }
 
     /// Takes the operands from the top of `stack` and leaves the result there.
     #[inline]
-    fn apply<N: Number>(self, stack: &mut [N], height: &mut usize, values: &impl Values<N>) {
+    fn apply<N: Number>(
+        self,
+        stack: &mut [N],
+        height: &mut usize,
+        functions: &[Function],
+        values: &impl Values<N>,
+    ) {
         let first = *height - self.arity();
         let result = match self {
             Self::Number(value) => N::constant(value),
@@ -180,6 +192,16 @@ impl Operation {
             Self::Unary(function) => stack[first].apply(function),
             Self::Binary(function) => function.apply(stack[first], stack[first + 1]),
             Self::Law => values.law(stack[first]),
+            Self::Call(place, _) => {
+                let parameter = |id| values.parameter(id);
+                let arguments = &stack[first..*height];
+                // Those that could not be read have no value.
+                functions
+                    .get(place as usize)
+                    .map_or_else(N::unknown, |function| {
+                        function.evaluate(functions, &parameter, arguments)
+                    })
+            }
         };
         stack[first] = result;
         *height = first + 1;
@@ -190,32 +212,40 @@ impl Expression {
     /// Makes an expression that is a plain number.
     #[must_use]
     pub fn constant(value: f64) -> Self {
-        Self::new(vec![Operation::Number(value)])
+        Self::new(vec![Operation::Number(value)], &Functions::default())
     }
 
     /// Makes the value of a parameter.
     #[must_use]
     pub fn parameter(id: ParameterId) -> Self {
-        Self::new(vec![Operation::Parameter(id)])
+        Self::new(vec![Operation::Parameter(id)], &Functions::default())
     }
 
     /// Makes the multiple of a variable.
     pub fn multiple(factor: f64, of: Variable) -> Self {
-        Self::new(vec![
+        let program = vec![
             Operation::Number(factor),
             Operation::Variable(of),
             Operation::Multiply,
-        ])
+        ];
+        Self::new(program, &Functions::default())
     }
 
-    fn new(program: Vec<Operation>) -> Self {
-        let mut parameters: Vec<ParameterId> = program
-            .iter()
-            .filter_map(|operation| match operation {
-                Operation::Parameter(id) => Some(*id),
-                _ => None,
-            })
-            .collect();
+    fn new(program: Vec<Operation>, functions: &Functions) -> Self {
+        let mut parameters = Vec::new();
+        let mut calls = false;
+        for operation in &program {
+            match operation {
+                Operation::Parameter(id) => parameters.push(*id),
+                Operation::Call(place, _) => {
+                    // Within a function those of others are added when all are read.
+                    let called = functions.list().get(*place as usize);
+                    parameters.extend(called.iter().flat_map(|function| &function.parameters));
+                    calls = true;
+                }
+                _ => {}
+            }
+        }
         parameters.sort_unstable();
         parameters.dedup();
         let heights = program.iter().scan(0, |height, operation| {
@@ -226,6 +256,10 @@ impl Expression {
             height: heights.max().unwrap_or(0),
             program: program.into(),
             parameters: parameters.into(),
+            functions: match calls {
+                true => functions.clone(),
+                false => Functions::default(),
+            },
         }
     }
 
@@ -259,12 +293,23 @@ impl Expression {
     ///
     /// Outside the domain of a function the result is not finite. Allocates nothing.
     pub(crate) fn evaluate_with<N: Number>(&self, values: &impl Values<N>) -> N {
+        self.evaluate_among(self.functions.list(), values)
+    }
+
+    /// Evaluates the expression, which calls these functions.
+    pub(in crate::mechanism) fn evaluate_among<N: Number>(
+        &self,
+        functions: &[Function],
+        values: &impl Values<N>,
+    ) -> N {
         match *self.program {
             // Most numbers of a mechanism are one of these two.
             [Operation::Number(value)] => N::constant(value),
             [Operation::Parameter(id)] => values.parameter(id),
-            _ if self.height <= USUAL_STACK => run::<N, USUAL_STACK>(&self.program, values),
-            _ => run::<N, MAX_STACK>(&self.program, values),
+            _ if self.height <= USUAL_STACK => {
+                run::<N, USUAL_STACK>(&self.program, functions, values)
+            }
+            _ => run::<N, MAX_STACK>(&self.program, functions, values),
         }
     }
 
@@ -306,13 +351,82 @@ impl Expression {
     #[must_use]
     pub fn has_pieces(&self) -> bool {
         use Operation::{Binary as Two, Unary as One};
-        self.program.iter().any(|operation| {
-            matches!(
-                operation,
-                One(Unary::Abs | Unary::Sign | Unary::Floor | Unary::Ceil)
-                    | Two(Binary::Mod | Binary::Min | Binary::Max)
-            )
+        let functions = self.functions.list();
+        self.program.iter().any(|operation| match operation {
+            One(Unary::Abs | Unary::Sign | Unary::Floor | Unary::Ceil)
+            | Two(Binary::Mod | Binary::Min | Binary::Max) => true,
+            Operation::Call(place, _) => {
+                // Of functions that are being read the reader adds what they call.
+                let called = functions.get(*place as usize);
+                called.is_some_and(|function| function.has_pieces)
+            }
+            _ => false,
         })
+    }
+
+    /// Returns the places of the functions that it calls, each as often as it does.
+    pub(in crate::mechanism) fn calls(&self) -> impl Iterator<Item = usize> {
+        let operations = self.program.iter();
+        operations.filter_map(|operation| match operation {
+            Operation::Call(place, _) => Some(*place as usize),
+            _ => None,
+        })
+    }
+
+    /// Returns whether it calls a function whose points make corners or jumps.
+    #[must_use]
+    pub fn has_corners(&self) -> bool {
+        let called = self
+            .calls()
+            .filter_map(|place| self.functions.list().get(place));
+        let mut jumps = called.filter_map(|function| function.first_jump);
+        jumps.any(|jump| jump < 2)
+    }
+
+    /// Shows `meet` each argument of a function on whose points the value, or its slope, jumps, in a fixed
+    /// order. Allocates nothing.
+    pub(crate) fn visit_corners(
+        &self,
+        parameter: &dyn Fn(ParameterId) -> f64,
+        variable: &dyn Fn(Variable) -> f64,
+        meet: &mut dyn FnMut(Corner),
+    ) {
+        self.visit_corners_among(self.functions.list(), parameter, variable, meet);
+    }
+
+    pub(in crate::mechanism) fn visit_corners_among(
+        &self,
+        functions: &[Function],
+        parameter: &dyn Fn(ParameterId) -> f64,
+        variable: &dyn Fn(Variable) -> f64,
+        meet: &mut dyn FnMut(Corner),
+    ) {
+        let values = (&parameter, &variable);
+        let mut stack = [0.0; MAX_STACK];
+        let mut height = 0;
+        for operation in &self.program {
+            if let Operation::Call(place, count) = operation {
+                let arguments = &stack[height - usize::from(*count)..height];
+                if let Some(function) = functions.get(*place as usize) {
+                    function.visit_corners(functions, parameter, arguments, meet);
+                }
+            }
+            operation.apply(&mut stack, &mut height, functions, &values);
+        }
+    }
+
+    /// Returns the number of its operations.
+    pub(in crate::mechanism) fn length(&self) -> usize {
+        self.program.len()
+    }
+
+    /// Returns the first function that it calls whose value jumps somewhere.
+    pub(in crate::mechanism) fn jumping_function(&self) -> Option<&Function> {
+        let called = self
+            .calls()
+            .filter_map(|place| self.functions.list().get(place));
+        let mut jumping = called.filter(|function| function.first_jump == Some(0));
+        jumping.next()
     }
 
     /// Returns the parameters that it uses, ascending, each once.
@@ -357,11 +471,15 @@ impl Expression {
 }
 
 /// Runs a program that leaves one operand and never has more than `STACK` waiting.
-fn run<N: Number, const STACK: usize>(program: &[Operation], values: &impl Values<N>) -> N {
+fn run<N: Number, const STACK: usize>(
+    program: &[Operation],
+    functions: &[Function],
+    values: &impl Values<N>,
+) -> N {
     let mut stack = [N::constant(0.0); STACK];
     let mut height = 0;
     for operation in program {
-        operation.apply(&mut stack, &mut height, values);
+        operation.apply(&mut stack, &mut height, functions, values);
     }
     stack[0]
 }

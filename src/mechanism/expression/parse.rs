@@ -2,6 +2,7 @@
 
 mod fault;
 
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use super::dimension::{Clash, Dimensions};
@@ -9,6 +10,7 @@ use super::error::ExpressionError;
 use super::function::{Binary, constant, function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
+use crate::mechanism::function::Functions;
 use crate::mechanism::names::NameTable;
 use crate::mechanism::number::Unary;
 use crate::mechanism::wording::quoted;
@@ -29,6 +31,45 @@ pub(in crate::mechanism) struct Scope<'a> {
     pub(in crate::mechanism) variables: &'a [Variable],
     /// Moving quantities that it may use.
     pub(in crate::mechanism) moving: Option<&'a MovingNames<'a>>,
+    /// Functions of the file that it may call.
+    pub(in crate::mechanism) functions: Option<&'a FunctionNames<'a>>,
+    /// Names of the arguments, within a function.
+    pub(in crate::mechanism) arguments: &'a [&'a str],
+}
+
+impl<'a> Scope<'a> {
+    /// Makes the scope of parameters and these variables alone.
+    pub(in crate::mechanism) fn new(
+        parameters: &'a NameTable<'a, ParameterId>,
+        variables: &'a [Variable],
+    ) -> Self {
+        Self {
+            parameters,
+            variables,
+            moving: None,
+            functions: None,
+            arguments: &[],
+        }
+    }
+}
+
+/// Names of the functions of the file.
+#[derive(Debug)]
+pub(in crate::mechanism) struct FunctionNames<'a> {
+    pub(in crate::mechanism) known: NameTable<'a, Signature>,
+    /// The functions, none while they are read.
+    pub(in crate::mechanism) list: Functions,
+    /// Whether they may be called, which parameters may not, as functions use these.
+    pub(in crate::mechanism) are_callable: bool,
+}
+
+/// What a call of a function needs.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::mechanism) struct Signature {
+    /// Place of the function among all.
+    pub(in crate::mechanism) place: usize,
+    /// Number of its arguments; `None` if they cannot be read.
+    pub(in crate::mechanism) arguments: Option<usize>,
 }
 
 /// Names of moving quantities in the formula of a computed measure or in the equation of a coupling.
@@ -38,12 +79,16 @@ pub(in crate::mechanism) struct MovingNames<'a> {
     pub(in crate::mechanism) known: NameTable<'a, Variable>,
     /// Dimensions of coordinates.
     pub(in crate::mechanism) dimensions: Vec<Dimension>,
+    /// Dimensions of the signals that a force may use, by their names.
+    pub(in crate::mechanism) of_signals: HashMap<&'a str, Dimension>,
     /// Computed measures, which no formula can use.
     pub(in crate::mechanism) computed: Vec<&'a str>,
     /// Says which names can be used.
     pub(in crate::mechanism) usable: &'static str,
     /// The coupling's law.
     pub(in crate::mechanism) law: Option<LawOfCoupling<'a>>,
+    /// Whether the expression may jump, as a force may.
+    pub(in crate::mechanism) may_jump: bool,
 }
 
 /// A law that an equation calls as a function of one argument.
@@ -199,12 +244,19 @@ impl<'a> Parser<'a> {
 
     /// Returns the expression of all that has been parsed.
     fn finish(self) -> Parsed {
+        let functions = self.functions();
         Parsed {
-            expression: Expression::new(self.program),
+            expression: Expression::new(self.program, &functions),
             dimension: self.dimensions.result(),
             clash: self.dimensions.clash,
             large_angle: self.large_angle,
         }
+    }
+
+    /// Returns the functions of the file.
+    fn functions(&self) -> Functions {
+        let names = self.scope.functions;
+        names.map_or_else(Functions::default, |names| names.list.clone())
     }
 
     /// Takes the next token.
@@ -282,6 +334,8 @@ impl<'a> Parser<'a> {
                 ExpressionError::new(span, format!("`{name}` is a function"))
                     .help(format!("write `{name}(…)`")),
             );
+        } else if let Some(signature) = self.scope.functions.and_then(|f| f.known.get(name)) {
+            return self.parse_called(signature, name, span, called);
         } else if let Some(value) = constant {
             Operation::Number(value)
         } else if let Some(variable) = self.variable(name) {
@@ -308,11 +362,19 @@ impl<'a> Parser<'a> {
             (operation, self.scope.moving)
         {
             self.dimensions.set(moving.dimensions[place]);
+        } else if let Some(moving) = self.scope.moving
+            && let Some(dimension) = moving.of_signals.get(name)
+        {
+            self.dimensions.set(*dimension);
         }
         Ok(span)
     }
 
     fn variable(&self, name: &str) -> Option<Variable> {
+        let mut arguments = self.scope.arguments.iter();
+        if let Some(place) = arguments.position(|argument| *argument == name) {
+            return Some(Variable::Argument(place));
+        }
         let mut variables = self.scope.variables.iter().copied();
         let variable = variables.find(|variable| variable.name() == name);
         variable.or_else(|| self.scope.moving?.known.get(name))
@@ -344,12 +406,61 @@ impl<'a> Parser<'a> {
                     }
                 }
                 let height = self.height + law.height + argument.len();
-                if height > MAX_STACK && Expression::new(self.program.clone()).height > MAX_STACK {
+                let functions = self.functions();
+                if height > MAX_STACK
+                    && Expression::new(self.program.clone(), &functions).height > MAX_STACK
+                {
                     return Err(self.nested_too_deeply());
                 }
                 self.dimensions.replace(dimension);
             }
         }
+        Ok(span)
+    }
+
+    /// Parses the arguments of a function of the file called `name`, which stands at `place`.
+    fn parse_called(
+        &mut self,
+        signature: Signature,
+        name: &str,
+        place: Span,
+        called: bool,
+    ) -> Result<Span, ExpressionError> {
+        if self
+            .scope
+            .functions
+            .is_some_and(|names| !names.are_callable)
+        {
+            let message = format!("a parameter cannot call the function {}", quoted(name));
+            return Err(ExpressionError::new(place, message)
+                .help("functions use parameters: call it where the parameter is used"));
+        }
+        if !called {
+            let error = ExpressionError::new(place, format!("{} is a function", quoted(name)));
+            return Err(error.help(format!("write `{name}(…)`")));
+        }
+        let open = self.advance()?;
+        let mut count = 0_u8;
+        if self.token.kind != TokenKind::Symbol(b')') {
+            loop {
+                self.parse_operators(0)?;
+                count = count.saturating_add(1);
+                if self.token.kind != TokenKind::Symbol(b',') {
+                    break;
+                }
+                self.advance()?;
+            }
+        }
+        let span = place.start..self.expect_close(&open)?.end;
+        // The fault of a function that cannot be read has been told.
+        let wanted = signature.arguments.unwrap_or(count.into());
+        if usize::from(count) != wanted {
+            let arguments = if wanted == 1 { "argument" } else { "arguments" };
+            let message = format!("`{name}` takes {wanted} {arguments}, found {count}");
+            return Err(ExpressionError::new(span, message));
+        }
+        let place = u32::try_from(signature.place).expect("a file has fewer functions");
+        self.emit(Operation::Call(place, count), &span)?;
         Ok(span)
     }
 
@@ -427,9 +538,10 @@ impl<'a> Parser<'a> {
         if self.height > MAX_STACK {
             return Err(self.nested_too_deeply());
         }
-        if arity > 0 && constant {
-            let value =
-                run::<f64, MAX_STACK>(&self.program[operands..], &(&|_| f64::NAN, &|_| f64::NAN));
+        let is_called = matches!(operation, Operation::Law | Operation::Call(..));
+        if arity > 0 && constant && !is_called {
+            let none = (&|_| f64::NAN, &|_| f64::NAN);
+            let value = run::<f64, MAX_STACK>(&self.program[operands..], &[], &none);
             if !value.is_finite() {
                 let text = quoted(&self.text[span.clone()]);
                 return Err(ExpressionError::new(

@@ -7,6 +7,7 @@
 use super::function::Binary;
 use super::{Expression, MAX_STACK, Operation, Values, Variable};
 use crate::mechanism::ParameterId;
+use crate::mechanism::function::Function;
 use crate::mechanism::number::{Interval, Jet3, Number, Taylor, Unary};
 
 /// Most switches of an expression in one range whose pieces are taken in turn, as each doubles the
@@ -90,15 +91,17 @@ impl Expression {
         switches: Option<u32>,
     ) -> Option<N> {
         let stack = [N::constant(0.0); MAX_STACK];
-        run_pieces(&self.program, (stack, 0), values, switches)
+        run_pieces(
+            (&self.program, self.functions.list()),
+            (stack, 0),
+            values,
+            switches,
+        )
     }
 }
 
 /// An enclosed number with derivatives, on one of the pieces of an expression.
 pub(in crate::mechanism) trait Piece: Number {
-    /// Returns the range of the value.
-    fn range(&self) -> Interval;
-
     /// Returns the number with another range of its value.
     fn with_range(self, range: Interval) -> Self;
 
@@ -110,10 +113,6 @@ pub(in crate::mechanism) trait Piece: Number {
 }
 
 impl Piece for Jet3<Interval> {
-    fn range(&self) -> Interval {
-        self.value
-    }
-
     fn with_range(self, range: Interval) -> Self {
         Self::new(range, self.derivatives)
     }
@@ -131,10 +130,6 @@ impl Piece for Jet3<Interval> {
 
 /// A number along a sub-step, with its derivative with respect to the variable.
 impl Piece for Taylor<Jet3<Interval>, 1> {
-    fn range(&self) -> Interval {
-        self.value.value
-    }
-
     fn with_range(self, range: Interval) -> Self {
         Self::new(self.value.with_range(range), self.derivatives)
     }
@@ -153,7 +148,7 @@ impl Piece for Taylor<Jet3<Interval>, 1> {
 /// Runs the rest of a program on a stack of some height. Returns the hull of the results for both
 /// pieces of each of the first `switches` operations that switch.
 fn run_pieces<N: Piece>(
-    program: &[Operation],
+    (program, functions): (&[Operation], &[Function]),
     (mut stack, mut height): ([N; MAX_STACK], usize),
     values: &impl Values<N>,
     switches: Option<u32>,
@@ -171,11 +166,11 @@ fn run_pieces<N: Piece>(
                 stack[first] = piece;
                 let rest = &program[index + 1..];
                 let state = (stack, first + 1);
-                run_pieces(rest, state, values, Some(switches))
+                run_pieces((rest, functions), state, values, Some(switches))
             });
             return Some(one?.hull(other?));
         }
-        operation.apply(&mut stack, &mut height, values);
+        operation.apply(&mut stack, &mut height, functions, values);
     }
     stack[0].is_bounded().then_some(stack[0])
 }

@@ -25,7 +25,8 @@ impl Expression {
         }
         let times = |function| {
             let function = [Operation::Unary(function), Operation::Multiply];
-            Self::new([&r.program, &angle.program, &function[..]].concat())
+            let program = [&r.program, &angle.program, &function[..]].concat();
+            Self::new(program, &r.functions.or(&angle.functions))
         };
         Some([times(Unary::Cos), times(Unary::Sin)])
     }
@@ -36,10 +37,13 @@ impl Expression {
             (Some(value), _) => Self::constant(value * factor + 0.0),
             (None, 0.0) => Self::constant(0.0),
             (None, 1.0) => self.clone(),
-            (None, -1.0) => Self::new([&*self.program, &[Operation::Negate]].concat()),
+            (None, -1.0) => {
+                let program = [&*self.program, &[Operation::Negate]].concat();
+                Self::new(program, &self.functions)
+            }
             (None, _) => {
                 let factor = [Operation::Number(factor), Operation::Multiply];
-                Self::new([&*self.program, &factor].concat())
+                Self::new([&*self.program, &factor].concat(), &self.functions)
             }
         }
     }

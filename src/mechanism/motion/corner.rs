@@ -19,9 +19,16 @@ impl MotionInForce {
     /// Returns the first corner from `from` to `to`, at which the velocity jumps: a time before it and one
     /// after it, a rounding apart. Allocates nothing.
     ///
-    /// Only motions with pieces, such as `abs(t - 1)`, have corners: tables join smoothly.
+    /// Only motions with pieces, such as `abs(t - 1)`, and tables of straight lines have corners: other
+    /// tables join smoothly.
     #[must_use]
     pub fn corner(&self, from: f64, to: f64) -> Option<[f64; 2]> {
+        if let Motion::Table(function) = &self.motion {
+            let has_corners = self.valid && function.first_jump() == Some(1);
+            return has_corners
+                .then(|| self.corner_of_table(from, to))
+                .flatten();
+        }
         let has_pieces =
             matches!(&self.motion, Motion::Expression(expression) if expression.has_pieces());
         if !has_pieces || from >= to {
@@ -29,6 +36,20 @@ impl MotionInForce {
         }
         let resolution = f64::EPSILON * from.abs().max(to.abs());
         self.first_corner([from, to], resolution, &mut { MOST_RANGES })
+    }
+
+    /// Returns the first corner of a table behind `from` up to `to`.
+    fn corner_of_table(&self, from: f64, to: f64) -> Option<[f64; 2]> {
+        let mut corner = self.next_point(from);
+        while corner <= to {
+            let before = corner.next_down();
+            let [left, right] = [before, corner].map(|t| self.evaluate(Jet::variable(t)).first());
+            if (right - left).abs() > ROUNDING * left.abs().max(right.abs()) {
+                return Some([before, corner]);
+            }
+            corner = self.next_point(corner);
+        }
+        None
     }
 
     /// Returns the first corner in a range: halves are searched where the motion is not shown to be smooth.
@@ -65,11 +86,7 @@ mod tests {
 
     /// Asserts that a motion has its corners from −1 to 10 s where they are, to some roundings.
     fn assert_corners(text: &str, expected: &[f64]) {
-        let scope = Scope {
-            parameters: &NameTable::new(),
-            variables: &[Variable::Time],
-            moving: None,
-        };
+        let scope = Scope::new(&NameTable::new(), &[Variable::Time]);
         let expression = Expression::parse(text, scope).expect("an expression");
         let mut motion = MotionInForce::new(&Motion::Expression(expression), 0);
         motion.set_parameters(|_| Jet::constant(0.0));

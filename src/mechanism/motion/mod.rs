@@ -7,7 +7,8 @@ mod moving;
 pub use law::Law;
 
 use super::{
-    Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table, Variable, joins,
+    Ends, Expression, Interpolation, Interval, Jet, Jet3, Number, ParameterId, PointFunction,
+    Spline, Variable, joins,
 };
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
@@ -16,38 +17,7 @@ pub enum Motion {
     /// An expression in `t` and the parameters.
     Expression(Expression),
     /// Points of the motion with their interpolation.
-    Table(MotionTable),
-}
-
-/// A motion through given points.
-#[derive(Clone, Debug)]
-pub struct MotionTable {
-    /// Times \[s\], rising, and values \[m or rad\].
-    pub table: Table,
-    /// Course from one point to the next.
-    pub interpolation: Interpolation,
-    /// Course before the first and after the last point.
-    pub ends: Ends,
-}
-
-/// Course of a motion from one point of its table to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Interpolation {
-    /// A cubic spline through all points.
-    Spline,
-    /// From rest to rest between neighbours.
-    Law(Law),
-}
-
-impl Interpolation {
-    /// Returns whether the second derivative jumps somewhere.
-    #[must_use]
-    pub fn jumps(self) -> bool {
-        match self {
-            Self::Spline => false,
-            Self::Law(law) => law.jumps(),
-        }
-    }
+    Table(PointFunction),
 }
 
 impl Motion {
@@ -223,36 +193,7 @@ pub fn not_finite(motion: Jet) -> Option<&'static str> {
     Some(what)
 }
 
-impl MotionTable {
-    fn evaluate<N: Number>(&self, spline: &Spline<N>, t: N) -> N {
-        let (times, values) = (spline.knots(), spline.values());
-        let last = times.len() - 1;
-        let (start, end) = (times[0], times[last]);
-        match self.ends {
-            Ends::Periodic => {
-                let period = end - start;
-                let laps = ((t.real() - start.real()) / period.real()).floor();
-                let laps = N::constant(laps);
-                let gained = laps * (values[last] - values[0]);
-                gained + self.between(spline, t - laps * period)
-            }
-            _ if t.real() < start.real() => self.beyond(spline, 0, t),
-            _ if t.real() >= end.real() => self.beyond(spline, last, t),
-            _ => self.between(spline, t),
-        }
-    }
-
-    /// Returns the motion before the first or after the last point.
-    fn beyond<N: Number>(&self, spline: &Spline<N>, point: usize, t: N) -> N {
-        let (from, value) = (spline.knots()[point], spline.values()[point]);
-        if self.ends == Ends::Natural {
-            let segment = point.saturating_sub(1);
-            value + spline.slope_on_segment(segment, from) * (t - from)
-        } else {
-            value
-        }
-    }
-
+impl PointFunction {
     /// Returns an upper bound of |d²u/dt²| between two times, between which no point lies.
     fn curvature(&self, spline: &Spline<Jet>, from: f64, to: f64) -> f64 {
         let times = spline.knots();
@@ -265,21 +206,17 @@ impl MotionTable {
             _ => 0.0,
         };
         let segment = spline.segment(middle - laps);
-        let Interpolation::Law(law) = self.interpolation else {
-            // Linear on each segment.
-            let at = |t: f64| spline.curvature_on_segment(segment, Jet::constant(t - laps))[0];
-            return at(from).value.abs().max(at(to).value.abs());
+        let law = match self.interpolation {
+            Interpolation::Law(law) => law,
+            Interpolation::Linear | Interpolation::Steps => return 0.0,
+            Interpolation::Spline => {
+                // Linear on each segment.
+                let at = |t: f64| spline.curvature_on_segment(segment, Jet::constant(t - laps))[0];
+                return at(from).value.abs().max(at(to).value.abs());
+            }
         };
         let time = times[segment + 1].value - times[segment].value;
         let stroke = spline.values()[segment + 1].value - spline.values()[segment].value;
         law.peak_acceleration() * stroke.abs() / (time * time)
-    }
-
-    fn between<N: Number>(&self, spline: &Spline<N>, t: N) -> N {
-        let segment = spline.segment(t.real());
-        let Interpolation::Law(law) = self.interpolation else {
-            return spline.on_segment(segment, t);
-        };
-        law.between(spline.knots(), spline.values(), segment, t)
     }
 }

@@ -5,8 +5,9 @@
 //! the hull of their bounds holds for the whole curve and its slope, and for their derivatives up
 //! to the first that jumps.
 
-use super::{Interpolation, Law, Motion, MotionInForce, MotionTable};
-use crate::mechanism::{Ends, Interval, Jet3, Number, Spline, Taylor};
+use super::{Law, Motion, MotionInForce};
+use crate::mechanism::spline::Knots;
+use crate::mechanism::{Interpolation, Interval, Jet3, Number, Spline, Taylor};
 
 /// A number along a sub-step.
 type Enclosed = Jet3<Interval>;
@@ -19,44 +20,10 @@ impl MotionInForce<Enclosed> {
     pub fn enclose(&self, t: Enclosed) -> Option<Enclosed> {
         match (&self.motion, &self.spline) {
             (Motion::Expression(_), _) => Some(self.evaluate(t)),
-            (Motion::Table(motion), Some(spline)) if spline.rises() => motion.enclose(spline, t),
+            (Motion::Table(motion), Some(spline)) if spline.rises() => {
+                Some(motion.evaluate(spline, t))
+            }
             (Motion::Table(_), _) => None,
-        }
-    }
-}
-
-impl MotionTable {
-    fn enclose(&self, spline: &Spline<Enclosed>, t: Enclosed) -> Option<Enclosed> {
-        let (times, values) = (spline.knots(), spline.values());
-        let last = times.len() - 1;
-        let (start, end) = (times[0], times[last]);
-        if self.ends != Ends::Periodic {
-            let before = t.value.low < start.value.high;
-            let after = t.value.high >= end.value.low;
-            let beyond = [(before, 0), (after, last)].into_iter();
-            let beyond = beyond.filter(|(meets, _)| *meets);
-            let beyond = beyond.map(|(_, point)| self.beyond(spline, point, t));
-            let inside = self
-                .interpolation
-                .enclose(spline, t)
-                .map(|[value, _]| value);
-            return beyond.chain(inside).reduce(Enclosed::hull);
-        }
-        let period = end - start;
-        let [first, second] = {
-            let laps = ((t - start).value / period.value).floor();
-            [laps.low, laps.high]
-        };
-        let on_lap = |lap: f64| {
-            let laps = Enclosed::constant(lap);
-            let inside = self.interpolation.enclose(spline, t - laps * period);
-            inside.map(|[value, _]| laps * (values[last] - values[0]) + value)
-        };
-        let before = on_lap(first)?;
-        match second - first {
-            0.0 => Some(before),
-            1.0 => Some(before.hull(on_lap(second)?)),
-            _ => None,
         }
     }
 }
@@ -91,6 +58,11 @@ impl Interpolation {
                     [spline.on_segment(segment, x), slope]
                 }
                 Self::Law(law) => law.enclose(spline, segment, x)?,
+                Self::Linear | Self::Steps => {
+                    let part = spline.part(segment);
+                    let slope = self.slope_at(&part, 0);
+                    [self.on(&part, x), slope]
+                }
             };
             found = Some(found.map_or(piece, |found| self.join(found, piece)));
         }

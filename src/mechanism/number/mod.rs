@@ -103,6 +103,16 @@ pub trait Number:
     /// Derivatives are not known, as it may jump from one to the other.
     fn either(self, other: Self) -> Self;
 
+    /// Returns bounds of the value, which are equal for a plain number.
+    fn range(self) -> Interval;
+
+    /// Returns the number where its value is in a range; `None` if it is in no point.
+    fn within(self, range: Interval) -> Option<Self>;
+
+    /// Returns bounds of a function that is this number in some points and `other` in the rest. The
+    /// derivative of order `jump` is the first that may jump: those of higher order are not known.
+    fn joined(self, other: Self, jump: usize) -> Self;
+
     /// Returns `function` of this number.
     fn apply(self, function: Unary) -> Self;
 

@@ -1,6 +1,6 @@
 //! Plain numbers.
 
-use super::{Number, Unary, function};
+use super::{Interval, Number, Unary, function};
 
 impl Number for f64 {
     fn constant(value: f64) -> Self {
@@ -50,6 +50,18 @@ impl Number for f64 {
     #[allow(clippy::float_cmp, reason = "one value or none")]
     fn either(self, other: Self) -> Self {
         if self == other { self } else { Self::NAN }
+    }
+
+    fn range(self) -> Interval {
+        Interval::point(self)
+    }
+
+    fn within(self, range: Interval) -> Option<Self> {
+        range.contains(self).then_some(self)
+    }
+
+    fn joined(self, other: Self, _jump: usize) -> Self {
+        self.either(other)
     }
 
     fn apply(self, function: Unary) -> Self {

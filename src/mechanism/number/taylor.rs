@@ -3,7 +3,7 @@
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::{Number, Unary};
+use super::{Interval, Number, Unary};
 
 /// A value with its first N derivatives with respect to one variable, N from 1 to 3: a truncated
 /// Taylor series.
@@ -251,6 +251,21 @@ impl<S: Number, const N: usize> Number for Taylor<S, N> {
 
     fn either(self, other: Self) -> Self {
         Self::undecided(self.value.either(other.value))
+    }
+
+    fn range(self) -> Interval {
+        self.value.range()
+    }
+
+    fn within(self, range: Interval) -> Option<Self> {
+        Some(Self::new(self.value.within(range)?, self.derivatives))
+    }
+
+    fn joined(self, other: Self, jump: usize) -> Self {
+        Self::by_order(|k| match jump.checked_sub(k) {
+            Some(jump) => self.order(k).joined(other.order(k), jump),
+            None => S::unknown(),
+        })
     }
 
     fn apply(self, function: Unary) -> Self {

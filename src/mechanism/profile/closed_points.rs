@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::ProfileError;
+use crate::mechanism::spline::{Fixed, Knots};
 use crate::mechanism::{
     Dual, Ends, Interpolation, Interval, Jet3, Law, Number, ParameterId, Spline, Table,
 };
@@ -106,12 +107,7 @@ impl ClosedPoints<f64> {
                     [spline.slope_on_segment(segment, theta), second, third],
                 )
             }
-            Interpolation::Law(law) => {
-                let point = |values: &[f64], k: usize| Jet3::constant(values[k]);
-                let [knots, radii] = [spline.knots(), spline.values()]
-                    .map(|values| [point(values, segment), point(values, segment + 1)]);
-                law.between(&knots, &radii, 0, Jet3::variable(theta))
-            }
+            interpolation => interpolation.on(&Fixed(spline).part(segment), Jet3::variable(theta)),
         }
     }
 
@@ -145,6 +141,9 @@ impl ClosedPoints<f64> {
             Interpolation::Spline => {
                 let third = self.on_segment(segment, from.midpoint(to)).third();
                 return self.around_middle(segment, [from, to], Interval::point(third));
+            }
+            Interpolation::Linear | Interpolation::Steps => {
+                return self.around_middle(segment, [from, to], Interval::point(0.0));
             }
             Interpolation::Law(law) => law,
         };
@@ -226,10 +225,7 @@ impl ClosedPoints<Jet3<Dual>> {
         let turn = start + (theta.value - start).rem_euclid(TAU);
         let theta = Jet3::variable(Dual::new(turn, theta.derivatives));
         let segment = spline.segment(turn);
-        match self.interpolation {
-            Interpolation::Spline => spline.on_segment(segment, theta),
-            Interpolation::Law(law) => law.between(spline.knots(), spline.values(), segment, theta),
-        }
+        self.interpolation.on(&spline.part(segment), theta)
     }
 }
 

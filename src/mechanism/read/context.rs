@@ -1,10 +1,12 @@
 //! State of reading a file: the names and values known so far, and the problems found.
 
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::expression::FunctionNames;
 use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::quoted;
@@ -63,6 +65,14 @@ pub(super) struct Context<'a> {
     pub(super) carriers: Vec<Option<BodyId>>,
     /// Name of the first body, or `ground`, that has a marker of this name.
     pub(super) owners: HashMap<&'a str, &'a str>,
+    /// Functions, `None` in a file without.
+    pub(super) functions: Option<Rc<FunctionNames<'a>>>,
+    /// Whether all functions could be read, or are still to be read.
+    pub(super) has_functions: bool,
+    /// Whether anything calls each function.
+    pub(super) functions_used: Vec<bool>,
+    /// Names of the arguments of the function that is read.
+    pub(super) arguments: Vec<&'a str>,
     /// CSV files read so far.
     pub(super) table_files: Vec<TableFile>,
     /// Numbers taken from them, for the canonical form.
@@ -91,6 +101,10 @@ impl<'a> Context<'a> {
             markers: Vec::new(),
             carriers: Vec::new(),
             owners: HashMap::new(),
+            functions: None,
+            has_functions: true,
+            functions_used: Vec::new(),
+            arguments: Vec::new(),
             table_files: Vec::new(),
             file_tables: String::new(),
         }
@@ -207,9 +221,10 @@ impl<'a> Context<'a> {
         Some(items?)
     }
 
-    /// Returns whether these parameters have values.
+    /// Returns whether these parameters have values, and functions that are called could be read.
     pub(super) fn knows(&self, mut parameters: impl Iterator<Item = ParameterId>) -> bool {
-        parameters.all(|id| self.parameter_values[id.index()].is_some())
+        let has_functions = self.functions_used.is_empty() || self.has_functions;
+        has_functions && parameters.all(|id| self.parameter_values[id.index()].is_some())
     }
 
     /// Returns the file's value of a parameter that [has one](Self::knows), otherwise 0.

@@ -1,5 +1,7 @@
 //! Measures that are computed from others.
 
+use std::collections::HashMap;
+
 use crate::mechanism::expression::MovingNames;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{DerivedMeasure, ForceQuantity, Mechanism, Unit, Variable};
@@ -25,8 +27,8 @@ table! {
     }
 }
 
-/// Number or expression over the parameters and signals, not read yet.
-struct Unread;
+/// Number or expression, not read yet.
+pub(super) struct Unread;
 
 impl<'a> Kind<'a> for Unread {
     type Value = &'a Value<'a>;
@@ -86,10 +88,12 @@ impl<'a> Context<'a> {
         let signals = MovingNames {
             known: signals.chain(forces).collect(),
             dimensions: Vec::new(),
+            of_signals: HashMap::new(),
             computed: entries.iter().map(|entry| entry.name()).collect(),
             usable: "a measure may use parameters, the variables of bodies, markers, drivers and \
                      measures with a coordinate, and forces where bodies have masses",
             law: None,
+            may_jump: true,
         };
         let read = |entry: &Entry<'a>| {
             let keys = self.entry::<DerivedKeys<'a>>(*entry, "measure")?;

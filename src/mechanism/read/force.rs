@@ -1,21 +1,28 @@
 //! Forces: along a coordinate, or at a marker.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::{Expression, Force, ForceLaw, Load, MarkerId, Spring, Variable};
+use crate::mechanism::expression::MovingNames;
+use crate::mechanism::syntax::Value;
+use crate::mechanism::{
+    CoordinateKind, Driver, DriverId, Expression, Force, ForceLaw, Load, MarkerId, Measure, Order,
+    Signal, Spring, Variable,
+};
 
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
+use super::derived::Unread;
 use super::kind::{AnyOf, Array, Entry, Text};
-use super::number::{Formula, NUMBER, Quantity};
+use super::number::{NUMBER, Quantity};
 use super::reference::MarkerName;
-use super::table::table;
+use super::table::{Field, table};
 
 table! {
     /// A generalized force along a coordinate: value - stiffness*(c - free) - damping*(rate of c).
     struct CoordinateForceKeys<'a> {
         /// Force or torque along the coordinate [N or N.m]: an expression in t, position and
-        /// velocity. Without value, stiffness and damping the force is an FMI input.
-        value: Quantity = Formula(&[Variable::Time, Variable::Position, Variable::Velocity]),
+        /// velocity, and those of drivers, freedoms and measures, such as crank.position. Without
+        /// value, stiffness and damping the force is an FMI input.
+        value: &'a Value<'a> = Unread,
         /// Stiffness of a spring [N/m or N.m/rad].
         stiffness: Quantity = NUMBER,
         /// Value of the coordinate at which the spring is free of force [m or rad].
@@ -33,10 +40,11 @@ table! {
         marker: MarkerId = MarkerName,
         /// Marker along whose axes the components are; ground's frame if left out.
         axes: MarkerId = MarkerName,
-        /// Components of the force [N]: expressions in t.
-        value: [Quantity; 2] = Array::new("[fx, fy]", [Formula(&[Variable::Time]); 2]),
-        /// Torque on the body [N.m]: an expression in t.
-        torque: Quantity = Formula(&[Variable::Time]),
+        /// Components of the force [N]: expressions in t and in positions and velocities of drivers,
+        /// freedoms and measures.
+        value: [&'a Value<'a>; 2] = Array::new("[fx, fy]", [Unread, Unread]),
+        /// Torque on the body [N.m], likewise.
+        torque: &'a Value<'a> = Unread,
         /// Description in one line.
         description: String = Text,
     }
@@ -47,18 +55,72 @@ pub(super) type AnyForce =
     AnyOf<(CoordinateKeys<'static>, CoordinateForceKeys<'static>), MarkerForceKeys<'static>>;
 
 impl<'a> Context<'a> {
-    /// Reads a force; its value is checked at `start_time` [s] where that suffices.
-    pub(super) fn force(&mut self, entry: Entry<'a>, start_time: f64) -> Option<Force> {
+    /// Reads the forces; their values are checked at `start_time` [s] where that suffices.
+    pub(super) fn forces(
+        &mut self,
+        entries: &Field<Vec<Entry<'a>>>,
+        drivers: &[Driver],
+        measures: &[Measure],
+        start_time: f64,
+    ) -> Vec<Force> {
+        let owners = |signal: Signal, name: &str, kind: CoordinateKind| {
+            let orders = [Order::Position, Order::Velocity].into_iter();
+            let units = kind.units();
+            let named = orders.zip(units).map(|(order, unit)| {
+                let name = format!("{name}.{}", order.suffix());
+                (name, Variable::Signal(signal, order), unit.dimension)
+            });
+            named.collect::<Vec<_>>()
+        };
+        let of_drivers = drivers.iter().enumerate().flat_map(|(index, driver)| {
+            let signal = Signal::Motion(DriverId(index));
+            owners(signal, &driver.name, driver.coordinate.kind)
+        });
+        let of_measures = measures.iter().enumerate().flat_map(|(index, measure)| {
+            owners(
+                Signal::Measure(index),
+                &measure.name,
+                measure.coordinate.kind,
+            )
+        });
+        let signals: Vec<_> = of_drivers.chain(of_measures).collect();
+        let computed = self.computed.clone();
+        let known = signals
+            .iter()
+            .map(|(name, variable, _)| (name.as_str(), *variable));
+        let of_signals = signals.iter().map(|(name, _, unit)| (name.as_str(), *unit));
+        let moving = MovingNames {
+            known: known.collect(),
+            dimensions: Vec::new(),
+            of_signals: of_signals.collect(),
+            computed,
+            usable: "a force may use parameters, `t`, and `position` and `velocity` of drivers, \
+                     freedoms and measures with a coordinate",
+            law: None,
+            may_jump: true,
+        };
+        let entries = entries.items().iter();
+        let read = entries.filter_map(|entry| self.force(*entry, &moving, start_time));
+        read.collect()
+    }
+
+    /// Reads a force.
+    fn force(
+        &mut self,
+        entry: Entry<'a>,
+        moving: &MovingNames<'_>,
+        start_time: f64,
+    ) -> Option<Force> {
         let fields = self.entry_fields(entry, "force")?;
         let has = |key| fields.table.contains_key(key);
         let (place, has) = match (has("coordinate"), has("marker")) {
             (true, false) => {
                 let keys = self.table::<(CoordinateKeys<'a>, CoordinateForceKeys<'a>)>(&fields);
-                return self.coordinate_force(entry, keys, start_time);
+                return self.coordinate_force(entry, keys, moving, start_time);
             }
             (false, true) => {
                 let keys = self.table::<MarkerForceKeys<'a>>(&fields);
-                return self.marker_force(entry, keys, start_time);
+                return self.marker_force(entry, keys, moving, start_time);
             }
             (true, true) => ("both", "and"),
             (false, false) => ("neither", "nor"),
@@ -76,6 +138,7 @@ impl<'a> Context<'a> {
         &mut self,
         entry: Entry<'a>,
         (coordinate, keys): (CoordinateKeys<'a>, CoordinateForceKeys<'a>),
+        moving: &MovingNames<'_>,
         start_time: f64,
     ) -> Option<Force> {
         let coordinate = self.coordinate(coordinate);
@@ -92,10 +155,11 @@ impl<'a> Context<'a> {
         if let (Some(coordinate), Some(free)) = (coordinate, &keys.free.value) {
             self.warn_of_unit(free, coordinate.kind.unit());
         }
-        if let Some(value) = &keys.value.value {
-            self.check_force(value, start_time)?;
-        }
-        let value = keys.value.optional()?.map(|value| value.expression);
+        const OWN: [Variable; 3] = [Variable::Time, Variable::Position, Variable::Velocity];
+        let value = match keys.value.value {
+            Some(value) => Some(self.force_value(value, &OWN, moving, start_time)?),
+            None => None,
+        };
         let damping = keys.damping.optional()?.map(|damping| damping.expression);
         let stiffness = keys.stiffness.optional()?;
         let free = keys.free.optional()?;
@@ -126,12 +190,22 @@ impl<'a> Context<'a> {
         &mut self,
         entry: Entry<'a>,
         keys: MarkerForceKeys<'a>,
+        moving: &MovingNames<'_>,
         start_time: f64,
     ) -> Option<Force> {
-        let components = keys.value.value.iter().flatten();
-        for value in components.chain(&keys.torque.value) {
-            self.check_force(value, start_time)?;
-        }
+        let mut read = |value| self.force_value(value, &[Variable::Time], moving, start_time);
+        let [value, torque] = [keys.value.key.is_some(), keys.torque.key.is_some()];
+        // Each is read, so that each wrong one is reported.
+        let force = keys.value.value.map(|components| components.map(&mut read));
+        let force = force.map(|[x, y]| Some([x?, y?]));
+        let torque = match torque {
+            true => Some(keys.torque.value.and_then(read)?),
+            false => None,
+        };
+        let force = match value {
+            true => Some(force??),
+            false => None,
+        };
         let marker = keys.marker.value?;
         if self.carriers[marker.index()].is_none() {
             let message = format!("{} acts on ground, which does not move", keys.owner.subject);
@@ -139,13 +213,12 @@ impl<'a> Context<'a> {
                 .suggest("give a marker of a body");
         }
         let axes = keys.axes.optional()?;
-        let law = match (keys.value.optional()?, keys.torque.optional()?) {
+        let law = match (force, torque) {
             (None, None) => None,
             (force, torque) => {
                 let zero = || Expression::constant(0.0);
-                let force = force.map(|force| force.map(|component| component.expression));
                 let [x, y] = force.unwrap_or_else(|| [zero(), zero()]);
-                Some([x, y, torque.map_or_else(zero, |torque| torque.expression)])
+                Some([x, y, torque.unwrap_or_else(zero)])
             }
         };
         Some(Force {
@@ -155,24 +228,28 @@ impl<'a> Context<'a> {
         })
     }
 
-    /// Refuses a force that is not finite at the start time; one that uses the coordinate is not
-    /// known yet.
-    fn check_force(&mut self, value: &Quantity, start_time: f64) -> Option<()> {
-        let expression = &value.expression;
-        let uses = |variable| expression.uses(variable);
-        if uses(Variable::Position)
-            || uses(Variable::Velocity)
-            || !self.knows(expression.parameters())
+    /// Reads the size of a force, over its own `variables` and what moves elsewhere. Refuses one that is
+    /// not finite at the start time, unless it depends on what moves, which is not known yet.
+    fn force_value(
+        &mut self,
+        value: &'a Value<'a>,
+        variables: &[Variable],
+        moving: &MovingNames<'_>,
+        start_time: f64,
+    ) -> Option<Expression> {
+        let Quantity {
+            expression, span, ..
+        } = self.formula(value, variables, Some(moving))?;
+        let is_known = expression.variables().all(|which| which == Variable::Time);
+        if is_known
+            && self.knows(expression.parameters())
+            && !expression
+                .evaluate(&|id| self.known_value(id), start_time)
+                .is_finite()
         {
-            return Some(());
-        }
-        if !expression
-            .evaluate(&|id| self.known_value(id), start_time)
-            .is_finite()
-        {
-            self.not_finite(value.span.clone(), "at the start time, the value");
+            self.not_finite(span, "at the start time, the value");
             return None;
         }
-        Some(())
+        Some(expression)
     }
 }

@@ -22,6 +22,7 @@ mod driver;
 mod force;
 mod freedom;
 mod friction;
+mod function;
 mod joint;
 mod kind;
 mod limits;
@@ -123,13 +124,13 @@ impl<'a> Context<'a> {
         }
         self.declare(&root);
         let (parameters, derivation_order) = self.parameters(root.parameters.items());
+        let functions = self.functions(root.functions.items());
         let has_freedoms = !root.freedoms.items().is_empty();
         let simulation = self.simulation(&root.simulation.or_empty(), has_freedoms);
         let (bodies, markers) = self.bodies(&root.ground, &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let mut drivers = self.each(&root.drivers, driver);
         drivers.extend(self.each(&root.freedoms, Self::freedom));
-        let force = |context: &mut Self, entry| context.force(entry, simulation.start);
         let measure = |context: &mut Self, entry| match is_derived(&entry) {
             true => None,
             false => context.measure(entry),
@@ -138,7 +139,7 @@ impl<'a> Context<'a> {
         let sections = [&root.drivers, &root.freedoms, &root.measures];
         self.declare_coordinates(sections, &drivers, &measures);
         let stops = self.each(&root.stops, Self::stop);
-        let mut forces = self.each(&root.forces, force);
+        let mut forces = self.forces(&root.forces, &drivers, &measures, simulation.start);
         // A rigid stop exerts nothing where all is driven: the motion ends there.
         let exerts = |stop: &Stop| has_freedoms || !stop.is_rigid();
         let of_stops = stops.iter().enumerate().filter(|(_, stop)| exerts(stop));
@@ -161,6 +162,7 @@ impl<'a> Context<'a> {
             copyright: root.copyright.value,
             parameters,
             derivation_order,
+            functions,
             bodies,
             markers,
             joints,
@@ -183,6 +185,7 @@ impl<'a> Context<'a> {
             self.warn_of_large_lengths();
             self.check_freedoms(&mechanism, root.freedoms.items());
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
+            self.warn_of_uncalled(root.functions.items());
         }
         Some(mechanism)
     }

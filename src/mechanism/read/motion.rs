@@ -4,8 +4,8 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::motion::not_finite;
 use crate::mechanism::wording::shown;
 use crate::mechanism::{
-    CoordinateKind, Ends, Expression, Interpolation, Jet, Law, Motion, MotionInForce, MotionTable,
-    Span, Variable,
+    CoordinateKind, Ends, Expression, Interpolation, Jet, Law, Motion, MotionInForce,
+    PointFunction, Span, Variable,
 };
 
 use super::context::Context;
@@ -28,6 +28,8 @@ table! {
 pub(super) const LAW: Word<Interpolation> = Word::new("motion law", code::ILLEGAL_VALUE, || {
     vec![
         ("spline", Interpolation::Spline),
+        ("linear", Interpolation::Linear),
+        ("steps", Interpolation::Steps),
         ("polynomial_345", Interpolation::Law(Law::Polynomial345)),
         ("polynomial_4567", Interpolation::Law(Law::Polynomial4567)),
         ("cycloidal", Interpolation::Law(Law::Cycloidal)),
@@ -41,11 +43,13 @@ pub(super) const LAW: Word<Interpolation> = Word::new("motion law", code::ILLEGA
     ]
 });
 
-const ENDS: Word<Ends> = Word::new("kind of ends", code::ILLEGAL_VALUE, || {
+pub(super) const ENDS: Word<Ends> = Word::new("kind of ends", code::ILLEGAL_VALUE, || {
     vec![
         ("clamped", Ends::Clamped),
         ("natural", Ends::Natural),
         ("periodic", Ends::Periodic),
+        ("linear", Ends::Linear),
+        ("zero", Ends::Zero),
     ]
 });
 
@@ -101,13 +105,25 @@ impl<'a> Context<'a> {
         &mut self,
         (point_keys, keys): (PointKeys<'a>, MotionKeys<'a>),
     ) -> Option<(PointTable, Interpolation, Ends)> {
-        let ends_place = keys.ends.span.clone();
+        let [law_place, ends_place] = [&keys.law.span, &keys.ends.span].map(Clone::clone);
         let interpolation = keys.law.or(Interpolation::Spline);
         let ends = keys.ends.or(Ends::Clamped);
-        if let (Some(Interpolation::Law(_)), Some(Ends::Natural)) = (interpolation, ends) {
+        let jumping = match (interpolation, ends) {
+            (Some(Interpolation::Steps), _) => Some(("`steps`", law_place)),
+            (_, Some(Ends::Zero)) => Some(("ends that are `zero`", ends_place.clone())),
+            _ => None,
+        };
+        if let Some((what, place)) = jumping {
+            let message = format!("a motion or the law of a coupling has no {what}: it would jump");
+            self.error(code::ILLEGAL_VALUE, place, message)
+                .suggest("only the `value` of forces and measures may jump, in `[functions]`");
+            return None;
+        }
+        let is_spline = interpolation == Some(Interpolation::Spline);
+        if let (Some(_), Some(Ends::Natural), false) = (interpolation, ends, is_spline) {
             let message = "only a spline has natural ends";
             self.error(code::ILLEGAL_VALUE, ends_place, message)
-                .suggest("the other laws come to rest at each point");
+                .suggest("`linear` ends go on with the last slope");
             return None;
         }
         let points = self.points(point_keys)?;
@@ -134,7 +150,7 @@ impl<'a> Context<'a> {
                 if is_angle {
                     self.warn_of_ordinates(&points);
                 }
-                Motion::Table(MotionTable {
+                Motion::Table(PointFunction {
                     table: points.table,
                     interpolation,
                     ends,

@@ -28,6 +28,9 @@ impl<'a> Context<'a> {
         self.body_names = root.bodies.items().iter().map(Entry::name).collect();
         let bodies = self.body_names.iter().copied();
         self.bodies = bodies.zip((0..).map(BodyId)).collect();
+        if !root.functions.items().is_empty() {
+            self.declare_functions(root.functions.items(), false);
+        }
         let joints = root.joints.items().iter().map(Entry::name);
         let constraints = root.constraints.items().iter().map(Entry::name);
         self.holder_counts = [joints.len(), constraints.len()];
@@ -63,6 +66,7 @@ impl<'a> Context<'a> {
     fn check_shared_names(&mut self, root: &Root<'a>) {
         let sections = [
             ("parameter", &root.parameters),
+            ("function", &root.functions),
             ("body", &root.bodies),
             ("joint", &root.joints),
             ("constraint", &root.constraints),

@@ -170,11 +170,20 @@ impl<'a> Context<'a> {
             parameters: &self.parameters,
             variables,
             moving,
+            functions: self.functions.as_deref(),
+            arguments: &self.arguments,
         };
         match parse(text, scope, &self.parameter_dimensions) {
             Ok(parsed) => {
+                let may_jump = moving.is_some_and(|moving| moving.may_jump);
+                if !may_jump {
+                    self.refuse_jumps(&parsed.expression, &value.span())?;
+                }
                 for id in parsed.expression.parameters() {
                     self.parameters_used[id.index()] = true;
+                }
+                for place in parsed.expression.calls() {
+                    self.functions_used[place] = true;
                 }
                 if let Some(clash) = &parsed.clash {
                     let part = text.get(clash.span.clone());

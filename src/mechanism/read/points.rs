@@ -227,6 +227,26 @@ impl<'a> Context<'a> {
         None
     }
 
+    /// Reads the abscissas and the values of a grid from the CSV file called `name`.
+    pub(super) fn grid_of_file(
+        &mut self,
+        name: &str,
+        span: &Span,
+    ) -> Option<([Vec<f64>; 2], Vec<f64>)> {
+        let file = self.table_file(name, span)?;
+        match self.table_files[file].grid() {
+            Ok(grid) => {
+                let _ = write!(self.file_tables, "{:?}{:?}", grid.abscissas, grid.values);
+                Some((grid.abscissas, grid.values))
+            }
+            Err(error) => {
+                let message = format!("in the file {}: {error}", quoted(name));
+                self.error(code::TABLE_FILE, span.clone(), message);
+                None
+            }
+        }
+    }
+
     /// Returns the place among the files read of the one called `name`; reads it if it is new.
     fn table_file(&mut self, name: &str, span: &Span) -> Option<usize> {
         let mut known = self.table_files.iter();

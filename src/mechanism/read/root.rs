@@ -16,6 +16,7 @@ use super::driver::DriverKeys;
 use super::force::AnyForce;
 use super::freedom::FreedomKeys;
 use super::friction::AnyFriction;
+use super::function::AnyFunction;
 use super::joint::AnyJoint;
 use super::kind::Described;
 use super::kind::{Entry, Fields, Item, Kind, Named, Section, Text, schema};
@@ -45,6 +46,8 @@ table! {
         copyright: String = Text,
         /// Numbers that can be changed in the FMU without a new export.
         parameters: Vec<Entry<'a>> = Named(PhantomData::<AnyParameter>),
+        /// Functions that expressions call by name.
+        functions: Vec<Entry<'a>> = Named(PhantomData::<AnyFunction>),
         /// The body that never moves.
         ground: Fields<'a> = Section(PhantomData::<GroundKeys<'static>>),
         /// The rigid bodies that move.

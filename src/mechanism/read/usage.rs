@@ -42,4 +42,13 @@ impl<'a> Context<'a> {
             self.warn(code::FLOATING_BODY, entry.key.span(), message);
         }
     }
+
+    /// Warns of functions that nothing calls.
+    pub(super) fn warn_of_uncalled(&mut self, functions: &[Entry<'a>]) {
+        let used = std::mem::take(&mut self.functions_used);
+        for (entry, _) in functions.iter().zip(used).filter(|(_, used)| !used) {
+            let message = format!("nothing calls the function {}", quoted(entry.name()));
+            self.warn(code::UNUSED_FUNCTION, entry.key.span(), message);
+        }
+    }
 }

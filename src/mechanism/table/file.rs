@@ -17,7 +17,7 @@ pub struct TableFile {
 }
 
 /// Fault of a CSV file.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(in crate::mechanism) enum TableFileError {
     /// It has no rows of numbers.
     #[error("it has no numbers")]
@@ -54,6 +54,19 @@ pub(in crate::mechanism) enum TableFileError {
         /// Places of the first two, from 1.
         places: [usize; 2],
     },
+    /// Abscissas of a grid do not rise.
+    #[error("the {place} must rise; {next} comes after {before}")]
+    Falls {
+        /// First column or first row.
+        place: &'static str,
+        /// An abscissa.
+        before: f64,
+        /// The one after it, which is not larger.
+        next: f64,
+    },
+    /// A grid of one row or one column.
+    #[error("a grid has from two rows and two columns of values to {MOST_POINTS} values")]
+    Small,
     /// No column of that name.
     #[error("{}", no_column(.name, .header))]
     Column {
@@ -135,6 +148,77 @@ impl TableFile {
         }
         Ok(rows)
     }
+
+    /// Reads a grid: first abscissas down the first column, second ones along the first row, values
+    /// between. The first cell counts for nothing.
+    ///
+    /// # Errors
+    ///
+    /// First fault of the file.
+    pub(in crate::mechanism) fn grid(&self) -> Result<GridRows, TableFileError> {
+        let separated = Separated::new(&self.text);
+        let mut grid = GridRows::default();
+        for (index, (line, record)) in separated.rows().enumerate() {
+            let number = |field: &str| {
+                let number = separated.number(field);
+                number.ok_or_else(|| TableFileError::Number {
+                    line,
+                    found: field.to_owned(),
+                })
+            };
+            if index == 0 {
+                // A separator at the end of the line leaves an empty field.
+                let fields: Vec<&str> = record.iter().skip(1).collect();
+                let count = fields.iter().rposition(|field| !field.is_empty());
+                let fields = &fields[..count.map_or(0, |last| last + 1)];
+                let read: Result<Vec<f64>, _> = fields.iter().map(|field| number(field)).collect();
+                grid.abscissas[1] = read?;
+                continue;
+            }
+            let expected = grid.abscissas[1].len() + 1;
+            if record.len() < expected {
+                return Err(TableFileError::Columns {
+                    line,
+                    found: record.len(),
+                    expected,
+                });
+            }
+            if grid.values.len() + expected > MOST_POINTS {
+                return Err(TableFileError::TooLong { most: MOST_POINTS });
+            }
+            let mut fields = record.iter().take(expected).map(number);
+            grid.abscissas[0].extend(fields.next().transpose()?);
+            for value in fields {
+                grid.values.push(value?);
+            }
+        }
+        if grid.abscissas.iter().any(|abscissas| abscissas.len() < 2) {
+            return Err(TableFileError::Small);
+        }
+        for (place, abscissas) in ["first column", "first row"]
+            .into_iter()
+            .zip(&grid.abscissas)
+        {
+            if let Some(pair) = abscissas.windows(2).find(|pair| pair[0] >= pair[1]) {
+                let [before, next] = [pair[0], pair[1]];
+                return Err(TableFileError::Falls {
+                    place,
+                    before,
+                    next,
+                });
+            }
+        }
+        Ok(grid)
+    }
+}
+
+/// Values of a grid.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::mechanism) struct GridRows {
+    /// First and second abscissas.
+    pub(in crate::mechanism) abscissas: [Vec<f64>; 2],
+    /// By rows of one first abscissa.
+    pub(in crate::mechanism) values: Vec<f64>,
 }
 
 fn find_columns(names: [&str; 2], header: &[String]) -> Result<[usize; 2], TableFileError> {
@@ -233,6 +317,46 @@ mod tests {
             error.to_string(),
             "it has no line of column names, so no column `t`"
         );
+    }
+
+    #[test]
+    fn grids_are_read_by_rows() {
+        let file = |text: &str| TableFile {
+            name: "map.csv".to_owned(),
+            text: text.to_owned(),
+        };
+        let expected = GridRows {
+            abscissas: [vec![0.0, 1.0], vec![-1.0, 0.5, 2.0]],
+            values: vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.5],
+        };
+        for text in [
+            "speed,-1,0.5,2\n0,1,2,3\n1,4,5,6.5\n",
+            ";-1;0,5;2;\n0;1;2;3;\n# between\n1;4;5;6,5;\n",
+            "0\t-1\t0.5\t2\n0\t1\t2\t3\n1\t4\t5\t6.5\n",
+        ] {
+            assert_eq!(file(text).grid().expect(text), expected, "{text}");
+        }
+        for (text, message) in [
+            (
+                "x,0\n0,1\n1,2\n",
+                "a grid has from two rows and two columns of values to 100000 values",
+            ),
+            ("x,0,1\n0,1\n1,2,3\n", "line 2 ends after 2 of 3 columns"),
+            (
+                "x,0,1\n0,1,a\n1,2,3\n",
+                "line 2: `a` is not a finite number",
+            ),
+            (
+                "x,0,0\n0,1,1\n1,2,3\n",
+                "the first row must rise; 0 comes after 0",
+            ),
+            (
+                "x,0,1\n0,1,1\n-1,2,3\n",
+                "the first column must rise; -1 comes after 0",
+            ),
+        ] {
+            assert_eq!(file(text).grid().expect_err(text).to_string(), message);
+        }
     }
 
     #[test]

@@ -27,12 +27,31 @@ impl Table {
         abscissas: &mut [N],
         ordinates: &mut [N],
     ) {
-        let evaluate = |expression: &Expression| expression.evaluate(parameter, N::constant(0.0));
-        let [across, up] = self.scale.each_ref().map(evaluate);
-        for (([x, y], abscissa), ordinate) in self.points.iter().zip(abscissas).zip(ordinates) {
-            *abscissa = evaluate(x) * across;
-            *ordinate = evaluate(y) * up;
+        let [across, up] = self.factors(parameter);
+        self.write_unscaled(parameter, abscissas, ordinates);
+        for (abscissa, ordinate) in abscissas.iter_mut().zip(ordinates) {
+            *abscissa = *abscissa * across;
+            *ordinate = *ordinate * up;
         }
+    }
+
+    /// Writes the points as the table has them.
+    pub(super) fn write_unscaled<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        abscissas: &mut [N],
+        ordinates: &mut [N],
+    ) {
+        let evaluate = |expression: &Expression| expression.evaluate(parameter, N::constant(0.0));
+        for (([x, y], abscissa), ordinate) in self.points.iter().zip(abscissas).zip(ordinates) {
+            (*abscissa, *ordinate) = (evaluate(x), evaluate(y));
+        }
+    }
+
+    /// Returns the factors of abscissas and ordinates.
+    pub(super) fn factors<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N) -> [N; 2] {
+        let zero = N::constant(0.0);
+        (self.scale.each_ref()).map(|factor| factor.evaluate(parameter, zero))
     }
 
     /// Returns the parameters that it uses; one may come twice.

@@ -7,6 +7,7 @@
 //! | `pendulum` | elliptic functions |
 //! | `closed_form` | springs, trains of wheels, rolling |
 //! | `lagrange` | minimal coordinates |
+//! | `laws` | forces that are functions of what moves elsewhere |
 //! | `published` | Andrews' mechanism, the problems of the IFToMM library |
 //! | `invariance` | other freedoms, names, orders, places; time reversed |
 //! | `dead_points` | coordinates with dead points on the way, where no joint has another |
@@ -30,6 +31,7 @@ mod events;
 mod invariance;
 mod joint_friction;
 mod lagrange;
+mod laws;
 mod minimal;
 mod overlap;
 mod pendulum;

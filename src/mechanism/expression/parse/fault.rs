@@ -11,6 +11,10 @@ use crate::mechanism::names;
 use crate::mechanism::synonym::in_our_words;
 use crate::mechanism::wording::quoted;
 
+/// Help for a quantity that no function sees.
+const SEEN_BY_FUNCTIONS: &str = "a function sees its arguments, parameters and other functions: give it the \
+                                 value where it is called";
+
 impl Parser<'_> {
     /// Returns the error for a token that cannot follow a complete operand.
     pub(super) fn missing_operator(&self) -> ExpressionError {
@@ -82,7 +86,11 @@ impl Parser<'_> {
                 return error.help("give the coupling the function: add `law = …`");
             }
             let name = without_module(name);
-            return match function_help(name) {
+            let of_file = self
+                .scope
+                .functions
+                .and_then(|names| names.known.near(name, &[]));
+            return match of_file.or_else(|| function_help(name)) {
                 Some(help) => error.help(help),
                 None => error,
             };
@@ -92,6 +100,9 @@ impl Parser<'_> {
                 span,
                 "only a `motion` or the `value` of a force may use time `t`",
             );
+            if !self.scope.arguments.is_empty() {
+                return error.help(SEEN_BY_FUNCTIONS);
+            }
             return match self.scope.variables {
                 [own, ..] => error.help(format!("here the variable is `{}`", own.name())),
                 [] => error,
@@ -108,6 +119,9 @@ impl Parser<'_> {
             let help = format!("write its formula here; {usable}");
             return ExpressionError::new(span, message).help(help);
         }
+        if let Some((message, help)) = self.loop_of_forces(name) {
+            return ExpressionError::new(span, message).help(help);
+        }
         if name.contains('.') {
             let error = ExpressionError::new(span, format!("no variable {}", quoted(name)));
             let constant = without_module(name);
@@ -115,7 +129,10 @@ impl Parser<'_> {
                 return error.help(format!("did you mean `{constant}`?"));
             }
             let Some(moving) = self.scope.moving else {
-                return error.help("only the `value` of a measure may use variables that move");
+                return error.help(match self.scope.arguments {
+                    [] => "only the `value` of a measure or of a force may use variables that move",
+                    _ => SEEN_BY_FUNCTIONS,
+                });
             };
             let is_coordinate = moving.known.get(owner).is_some();
             let own = is_coordinate.then(|| format!("did you mean `{owner}`?"));
@@ -170,15 +187,51 @@ impl Parser<'_> {
             _ => None,
         };
         let own = || match self.scope.variables {
-            [Variable::Argument] => Some("a law is a function of `x`".to_owned()),
+            [Variable::Argument(_)] => Some("a law is a function of `x`".to_owned()),
             variables if variables.contains(&Variable::Position) => Some(
                 "give it a value in `[parameters]`; the force's own coordinate is `position`"
                     .to_owned(),
             ),
             _ => None,
         };
-        let help = help.or(polar_angle).or_else(near).or_else(own);
+        let arguments = || {
+            let [first, ..] = self.scope.arguments else {
+                return None;
+            };
+            let near = names::help(name, self.scope.arguments, &[])?;
+            Some(match near.starts_with("did") {
+                true => near,
+                false => format!("name it as an argument: `of = [\"{first}\", \"{name}\"]`"),
+            })
+        };
+        let help = help
+            .or(polar_angle)
+            .or_else(near)
+            .or_else(arguments)
+            .or_else(own);
         error.help(help.unwrap_or_else(|| "give it a value in `[parameters]`".to_owned()))
+    }
+
+    /// Returns message and help for a quantity that follows from forces, within the size of one.
+    fn loop_of_forces(&self, name: &str) -> Option<(String, &'static str)> {
+        let (_, part) = name.rsplit_once('.')?;
+        self.scope
+            .moving
+            .filter(|moving| !moving.of_signals.is_empty())?;
+        let name = quoted(name);
+        match part {
+            "acceleration" | "ax" | "ay" | "alpha" => Some((
+                format!(
+                    "a force cannot use the acceleration {name}, which follows from all forces"
+                ),
+                "use the position or the velocity",
+            )),
+            "effort" | "fx" | "fy" | "torque" | "tension" | "power" | "bias" => Some((
+                format!("a force cannot use {name}, which follows from all forces"),
+                "friction by the load of a joint is `[friction]` with its `joint`",
+            )),
+            _ => None,
+        }
     }
 
     /// Returns help for a unit's symbol after a number.

@@ -72,6 +72,7 @@ fn join<'a>(
         Operation::Number(value) => (format!("{value:?}"), Atom),
         Operation::Parameter(id) => (parameter_name(id).to_owned(), Atom),
         Operation::Variable(variable) => (variable.name().to_owned(), Atom),
+        Operation::Call(..) => unreachable!("the texts call no functions of a file"),
         Operation::Law => (format!("law({})", operand(Sum)), Atom),
         Operation::Unary(_) => {
             let name = name(operation);

@@ -67,14 +67,7 @@ const SMOOTH: [(&str, f64, f64); 40] = [
 fn parse(text: &str) -> Result<Expression, ExpressionError> {
     let parameters: NameTable<'_, ParameterId> =
         NAMES.into_iter().zip((0..).map(ParameterId)).collect();
-    Expression::parse(
-        text,
-        Scope {
-            parameters: &parameters,
-            variables: &[Variable::Time],
-            moving: None,
-        },
-    )
+    Expression::parse(text, Scope::new(&parameters, &[Variable::Time]))
 }
 
 /// The value and three derivatives at time `t` for the same parameters.

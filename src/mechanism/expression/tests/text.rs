@@ -80,11 +80,7 @@ fn errors_say_where_and_what_would_be_right() {
 #[test]
 fn time_is_refused_where_it_has_no_place() {
     let parameters = NameTable::new();
-    let scope = Scope {
-        parameters: &parameters,
-        variables: &[],
-        moving: None,
-    };
+    let scope = Scope::new(&parameters, &[]);
     let error = Expression::parse("2*t", scope).expect_err("no time here");
     assert_eq!(error.span, 2..3);
     assert_eq!(
@@ -99,11 +95,7 @@ fn the_polar_angle_has_its_place_in_a_profile() {
     let parse = |text, names: &[&'static str], variables: &[Variable]| {
         let ids = (0..).map(ParameterId);
         let parameters: NameTable<'_, ParameterId> = names.iter().copied().zip(ids).collect();
-        let scope = Scope {
-            parameters: &parameters,
-            variables,
-            moving: None,
-        };
+        let scope = Scope::new(&parameters, variables);
         Expression::parse(text, scope)
     };
     let profile = &[Variable::PolarAngle][..];

@@ -167,6 +167,19 @@ impl Number for Interval {
         Self::hull([self, other])
     }
 
+    fn range(self) -> Interval {
+        self
+    }
+
+    fn within(self, range: Interval) -> Option<Self> {
+        let part = self.intersection(range);
+        (!part.is_undefined()).then_some(part)
+    }
+
+    fn joined(self, other: Self, _jump: usize) -> Self {
+        Self::hull([self, other])
+    }
+
     fn apply(self, function: Unary) -> Self {
         let from_minus_one_to_one = || self.intersection(Self::new(-1.0, 1.0));
         match function {

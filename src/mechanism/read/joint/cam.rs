@@ -115,7 +115,14 @@ impl<'a> Context<'a> {
         &mut self,
         (keys, contour): (PointKeys<'a>, ContourKeys<'a>),
     ) -> Option<Profile> {
+        let law_place = contour.law.span.clone();
         let interpolation = contour.law.or(Interpolation::Spline);
+        if let Some(Interpolation::Linear | Interpolation::Steps) = interpolation {
+            let message = "a contour of straight lines or steps has corners";
+            self.error(code::ILLEGAL_VALUE, law_place, message)
+                .suggest("leave `law` out for a spline, or take a motion law such as `cycloidal`");
+            return None;
+        }
         let place = keys.owner.place.clone();
         let mut points = self.points(keys)?;
         self.check_ordinates_positive(&points, "the radius of a contour")?;

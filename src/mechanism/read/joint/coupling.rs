@@ -1,6 +1,6 @@
 //! `coupling`: an equation between coordinates.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::{LawOfCoupling, MovingNames};
@@ -13,7 +13,7 @@ use crate::mechanism::read::points::PointKeys;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
     Coordinate, CoordinateEquation, CoordinateKind, Dimension, Expression, JointKind, MOST_BODIES,
-    MOST_COUPLED, Motion, MotionTable, Phase, Variable,
+    MOST_COUPLED, Motion, Phase, PointFunction, Variable,
 };
 
 use super::phase::{PhaseOf, phase};
@@ -74,13 +74,13 @@ impl<'a> Kind<'a> for LawOfOneArgument {
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Law> {
         if !item.value.get_ref().is_table() {
-            let formula = context.formula(item.value, &[Variable::Argument], None)?;
+            let formula = context.formula(item.value, &[Variable::Argument(0)], None)?;
             return Some(Law::Expression(formula.expression, formula.dimension));
         }
         let fields = context.fields(item.span(), item.value, "the law".to_owned())?;
         let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
         let (points, interpolation, ends) = context.motion_table(keys)?;
-        Some(Law::Table(Motion::Table(MotionTable {
+        Some(Law::Table(Motion::Table(PointFunction {
             table: points.table,
             interpolation,
             ends,
@@ -106,6 +106,7 @@ impl<'a> Context<'a> {
         let moving = MovingNames {
             known: names.zip((0..).map(Variable::Coordinate)).collect(),
             dimensions: kinds.map(dimension).collect(),
+            of_signals: HashMap::new(),
             computed: self.computed.clone(),
             usable: "an equation may use parameters, drivers and measures with a coordinate",
             law: law.as_ref().map(|law| match law {
@@ -114,6 +115,7 @@ impl<'a> Context<'a> {
                 }
                 Law::Table(_) => LawOfCoupling::Table,
             }),
+            may_jump: false,
         };
         let parsed = self.equation(value, &moving)?;
         let places = CoordinateEquation::places(&parsed.expression);

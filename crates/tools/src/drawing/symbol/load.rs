@@ -1,7 +1,7 @@
 //! Loads: arrows of forces at a point, arcs of torques. Their length has no meaning.
 
 use super::*;
-use biela::mechanism::{ForceLaw, Simulation};
+use biela::mechanism::{ForceLaw, Simulation, Variable};
 
 /// A force or a torque, or both, on a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +74,9 @@ pub(super) fn compose_along(
     };
     let start = composer.mechanism.simulation.start;
     let sign = law.map_or(1.0, |law| {
-        let size = |c| law.evaluate(&|p| composer.parameter(p), start, c);
+        // What moves elsewhere counts as zero here.
+        let other = |which| if which == Variable::Time { start } else { 0.0 };
+        let size = |c| law.evaluate(&|p| composer.parameter(p), &other, c);
         // One that is zero here has its direction elsewhere, or in motion.
         let poses = || std::iter::once(composer.q).chain(composer.poses());
         let sizes = [0.0, 1.0]

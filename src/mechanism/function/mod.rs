@@ -1,0 +1,193 @@
+//! Functions of the file, which expressions call by their names.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `points` | [`PointFunction`]: points, the course between them and outside |
+//! | `grid` | [`Grid`]: a value for each pair of arguments |
+//!
+//! A function sees its arguments, parameters and other functions. Expressions call it by its place among
+//! the functions of the mechanism, which each of them holds.
+
+mod grid;
+mod points;
+
+use std::sync::Arc;
+
+pub use grid::Grid;
+pub(crate) use points::MOST_MOVING_POINTS;
+pub use points::{CalledPoints, Interpolation, PointFunction};
+
+use super::expression::{Values, Variable};
+use super::{Expression, Number, ParameterId};
+
+/// Most arguments of a function.
+pub const MOST_ARGUMENTS: usize = 8;
+
+/// A function of the file.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Name, unique among all named things of the mechanism.
+    pub name: String,
+    /// Description in one line, empty if the file gives none.
+    pub description: String,
+    /// Number of arguments.
+    pub arguments: usize,
+    /// What it computes.
+    pub body: FunctionBody,
+    /// Parameters that it uses, also through others that it calls; ascending, each once.
+    pub parameters: Box<[ParameterId]>,
+    /// Order of the first derivative that jumps somewhere, 0 for the value itself; `None` if those up to
+    /// the second are continuous, or pieces of its expression alone make corners.
+    pub first_jump: Option<usize>,
+    /// Whether it is made of pieces that may meet with a corner.
+    pub has_pieces: bool,
+}
+
+/// An argument of a function on whose points the value, or its slope, jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// The argument.
+    pub argument: f64,
+    /// The nearest of these points at or below the argument, and above it; infinite where there is none.
+    pub nearest: [f64; 2],
+    /// Whether the value jumps there.
+    pub jumps: bool,
+}
+
+/// What a function computes.
+#[derive(Clone, Debug)]
+pub enum FunctionBody {
+    /// An expression in its arguments.
+    Formula(Expression),
+    /// Points of a function of one argument.
+    Points(CalledPoints),
+    /// Points of a function of two arguments.
+    Grid(Grid),
+}
+
+/// The functions of a mechanism, shared by all that calls them.
+#[derive(Clone, Debug, Default)]
+pub struct Functions(Option<Arc<[Function]>>);
+
+impl Functions {
+    /// Makes the list.
+    #[must_use]
+    pub fn new(functions: Vec<Function>) -> Self {
+        Self((!functions.is_empty()).then(|| functions.into()))
+    }
+
+    /// Returns the functions in file order.
+    #[must_use]
+    pub fn list(&self) -> &[Function] {
+        self.0.as_deref().unwrap_or_default()
+    }
+
+    /// Returns this list, or `other` where it is empty.
+    pub(in crate::mechanism) fn or(&self, other: &Self) -> Self {
+        if self.0.is_some() { self } else { other }.clone()
+    }
+}
+
+/// Lists are equal if they are one.
+impl PartialEq for Functions {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            (one, other) => one.is_none() && other.is_none(),
+        }
+    }
+}
+
+impl Function {
+    /// Returns the value for these arguments, or bounds of it over ranges. Allocates nothing.
+    pub(super) fn evaluate<N: Number>(
+        &self,
+        functions: &[Self],
+        parameter: &dyn Fn(ParameterId) -> N,
+        arguments: &[N],
+    ) -> N {
+        match &self.body {
+            FunctionBody::Points(points) => points.evaluate(&parameter, arguments[0]),
+            FunctionBody::Grid(grid) => grid.evaluate(&parameter, [arguments[0], arguments[1]]),
+            FunctionBody::Formula(expression) => {
+                let inside = Inside {
+                    parameter,
+                    arguments,
+                };
+                expression.evaluate_among(functions, &inside)
+            }
+        }
+    }
+
+    /// Shows `meet` each argument, here and in functions that it calls, on whose points the value or its
+    /// slope jumps.
+    pub(super) fn visit_corners(
+        &self,
+        functions: &[Self],
+        parameter: &dyn Fn(ParameterId) -> f64,
+        arguments: &[f64],
+        meet: &mut dyn FnMut(Corner),
+    ) {
+        let Some(jump) = self.first_jump.filter(|jump| *jump < 2) else {
+            return;
+        };
+        let corner = |argument, nearest| Corner {
+            argument,
+            nearest,
+            jumps: jump == 0,
+        };
+        match &self.body {
+            FunctionBody::Points(points) => {
+                meet(corner(
+                    arguments[0],
+                    points.corners(&parameter, arguments[0]),
+                ));
+            }
+            FunctionBody::Grid(grid) => {
+                for (axis, x) in arguments.iter().enumerate() {
+                    let factor = grid.scale[axis].evaluate(&parameter, 0.0);
+                    meet(corner(*x, grid.corners(axis, factor, *x)));
+                }
+            }
+            FunctionBody::Formula(expression) => {
+                let variable = |which| match which {
+                    Variable::Argument(place) => arguments[place],
+                    _ => f64::NAN,
+                };
+                expression.visit_corners_among(functions, parameter, &variable, meet);
+            }
+        }
+    }
+}
+
+/// The numbers that the expression of a function takes from outside.
+struct Inside<'a, N> {
+    parameter: &'a dyn Fn(ParameterId) -> N,
+    arguments: &'a [N],
+}
+
+impl<N: Number> Values<N> for Inside<'_, N> {
+    fn parameter(&self, id: ParameterId) -> N {
+        (self.parameter)(id)
+    }
+
+    fn variable(&self, which: Variable) -> N {
+        match which {
+            Variable::Argument(place) => self.arguments[place],
+            _ => N::unknown(),
+        }
+    }
+
+    fn law(&self, _argument: N) -> N {
+        N::unknown()
+    }
+}
+
+/// Returns the largest number up to `x` and the smallest above it.
+fn nearest(numbers: impl Iterator<Item = f64>, x: f64) -> [f64; 2] {
+    let around = [f64::NEG_INFINITY, f64::INFINITY];
+    numbers.fold(around, |[below, above], number| match number <= x {
+        true => [below.max(number), above],
+        false => [below, above.min(number)],
+    })
+}
