@@ -4,7 +4,7 @@ use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
 use super::overlap::{Overlap, describe, own_kind};
-use super::passive::{Mode, ROUNDINGS};
+use super::passive::{Mode, PLACE_ROUNDING};
 use super::settle::Touch;
 use super::triangular::ascend;
 use crate::kinematics::{Rates, Solver};
@@ -76,7 +76,7 @@ impl Equations {
         let after = self.own_values(solver);
         let moves = self.freedoms.iter().zip(before.into_iter().zip(after));
         let moves = moves.filter_map(|(freedom, ([scale, before], [_, after]))| {
-            let is_moved = (after - before).abs() > TOLD * ROUNDINGS * scale;
+            let is_moved = (after - before).abs() > TOLD * PLACE_ROUNDING * scale;
             is_moved.then_some((*freedom, [before, after]))
         });
         Ok(Some(Overlap {

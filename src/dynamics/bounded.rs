@@ -15,7 +15,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 const DEPENDENT: f64 = 1e-11;
 
 /// Part of a rate that is its rounding.
-const ROUNDING: f64 = 1e-12;
+const STILL_RATE: f64 = 1e-12;
 
 /// A force that bounds hold, at the present step of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub(super) fn solve(
         let scale = |k: usize| {
             let row = w.row(k);
             let products = row.iter().zip(&x).map(|(w, x)| (w * x).abs());
-            ROUNDING * products.fold(b[k].abs(), f64::max)
+            STILL_RATE * products.fold(b[k].abs(), f64::max)
         };
         let violation = |k: usize| {
             let rate = gradient[k] + b[k];
@@ -165,7 +165,8 @@ fn minimum(
         let others = chosen.iter().copied().zip(others.iter().copied());
         let n: Vec<(usize, f64)> = others.chain([(k, 1.0)]).collect();
         let slope: f64 = n.iter().map(|(j, part)| b[*j] * part).sum();
-        let rounding = |(j, part): &(usize, f64)| (ROUNDING * b[*j].abs() + noise[*j]) * part.abs();
+        let rounding =
+            |(j, part): &(usize, f64)| (STILL_RATE * b[*j].abs() + noise[*j]) * part.abs();
         if slope.abs() > n.iter().map(rounding).sum() {
             for (j, part) in n {
                 target[place_of(j)] -= slope.signum() * part;

@@ -14,7 +14,7 @@ use crate::mechanism::Jet;
 /// in a step, whatever its tolerance.
 const COUNTS: [f64; 2] = [1e-9, 1e-4];
 /// Roundings in the sum of the energies of all bodies.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+const SUM_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl Equations {
     /// Checks that the energy has changed by the work done from the accepted point to the present one, up
@@ -54,7 +54,7 @@ impl Equations {
         let change = now - before - work;
         let tolerated = tolerance.clamp(COUNTS[0], COUNTS[1]) * (kinetic + natural);
         let rounding =
-            ROUNDINGS * (before.abs() + now.abs() + accepted.work.abs() + point.work.abs());
+            SUM_ROUNDING * (before.abs() + now.abs() + accepted.work.abs() + point.work.abs());
         let skipped = if is_stiff { work.abs() } else { 0.0 };
         // False for NaN too.
         if change.abs() <= tolerated + rounding + skipped {

@@ -7,7 +7,7 @@ use super::event::Event;
 use super::given::Given;
 use super::motion::FreeMotion;
 use super::overlap::Overlap;
-use super::passive::ROUNDINGS;
+use super::passive::PLACE_ROUNDING;
 use crate::kinematics::{Path, Pose, Solver};
 use crate::mechanism::{DriverId, Expression, Jet, Mechanism, Order};
 
@@ -62,7 +62,7 @@ impl KeptStart {
                 (Order::Position, own, value),
                 (Order::Velocity, driver.start_velocity(), velocity),
             ] {
-                if (kept_value - own).abs() > TOLD * ROUNDINGS * scale {
+                if (kept_value - own).abs() > TOLD * PLACE_ROUNDING * scale {
                     kept.set_start(*freedom, order, kept_value);
                     is_other = true;
                 }

@@ -7,7 +7,7 @@ use crate::mechanism::Corner;
 
 /// Distance of an argument from a point that is rounding, relative to both. Halved or doubled, a passage
 /// takes as many steps; the motion up to there differs by rounding.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const POINT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Steps that are cut in a row before the end of the last one is taken for the instant: far more than the
 /// search takes.
 const MOST_CUTS: i32 = 80;
@@ -80,7 +80,7 @@ impl Turns {
                     continue;
                 }
                 let size = before.argument.abs().max(after.argument.abs());
-                let slack = ROUNDING * size.max(point.abs());
+                let slack = POINT_ROUNDING * size.max(point.abs());
                 if to >= -slack || is_shortest || self.cuts >= MOST_CUTS {
                     passes = true;
                     self.jumps |= before.jumps;
@@ -122,7 +122,7 @@ impl Turns {
             return 1.0;
         }
         let sign = if side == 0 { 1.0 } else { -1.0 };
-        let slack = ROUNDING * after.argument.abs().max(point.abs());
+        let slack = POINT_ROUNDING * after.argument.abs().max(point.abs());
         sign * (after.argument - point) + 2.0 * slack
     }
 }

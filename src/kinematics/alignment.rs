@@ -8,7 +8,7 @@ use crate::mechanism::{BodyId, Mechanism};
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Alignment {
     /// The relation of its members.
-    pub relation: Relation,
+    pub relation: LineRelation,
     /// The bodies, joints, constraints and drivers in the relation.
     pub members: Vec<Member>,
 }
@@ -16,7 +16,7 @@ pub struct Alignment {
 /// A relation of lines. The line of a link leads through its ends; that of a slide or a cam is
 /// the normal at its contact, along which it transmits force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Relation {
+pub enum LineRelation {
     /// None that is known: the members are all that moves.
     #[default]
     Free,
@@ -30,7 +30,7 @@ pub enum Relation {
     Parallel,
 }
 
-impl Relation {
+impl LineRelation {
     /// All relations, in the order of their numbers in a serialized state.
     pub const ALL: [Self; 5] = [
         Self::Free,
@@ -107,16 +107,16 @@ impl Alignment {
         };
         let all = || lines(&self.members, "");
         match (self.relation, &self.members[..]) {
-            (Relation::InLine, _) => format!("{} {almost}line up", all()),
-            (Relation::ThroughPin, [passing @ .., pin]) => {
+            (LineRelation::InLine, _) => format!("{} {almost}line up", all()),
+            (LineRelation::ThroughPin, [passing @ .., pin]) => {
                 let passes = if passing.len() == 1 { "passes" } else { "pass" };
                 let passing = lines(passing, "the line of ");
                 let pin = pin.describe(mechanism);
                 format!("{passing} {almost}{passes} through {pin}")
             }
-            (Relation::Concurrent, _) => format!("{} {almost}meet in one point", all()),
-            (Relation::Parallel, _) => format!("{} are {almost}parallel", all()),
-            (Relation::Free | Relation::ThroughPin, _) => {
+            (LineRelation::Concurrent, _) => format!("{} {almost}meet in one point", all()),
+            (LineRelation::Parallel, _) => format!("{} are {almost}parallel", all()),
+            (LineRelation::Free | LineRelation::ThroughPin, _) => {
                 let moved = list(&self.names(mechanism), " and ");
                 format!("{moved} can {almost}move with all drivers held")
             }

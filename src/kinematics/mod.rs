@@ -71,11 +71,11 @@ mod stop_limit;
 mod system;
 mod tolerances;
 
-pub use alignment::{Alignment, Member, Relation};
+pub use alignment::{Alignment, LineRelation, Member};
 pub use analysis::{
-    ChangePoint, Direction, DrawnApart, End, Extreme, GeometryWarning, GeometryWarningKind,
-    InstantCentre, Mode, Modes, OffPulley, Play, Range, RangeSettings, Sample, Sensitivity,
-    offer_start,
+    AssemblyMode, ChangePoint, Direction, DrawnApart, End, Extreme, GeometryWarning,
+    GeometryWarningKind, InstantCentre, Modes, NeededPlay, OffPulley, Range, RangeSettings, Sample,
+    Sensitivity, offer_start,
 };
 pub use assembly::estimate::Move;
 pub use constraint::configuration::{

@@ -465,7 +465,7 @@ impl State {
     pub(super) fn measure_roundings(&self, measure: &dyn Constraint, rates: &Rates) -> [f64; 3] {
         /// Roundings of a term: those of the bodies that it depends on, some ten operations each. Halved,
         /// rates at rest of deep chains may count as motion. Doubled, motion twice as slow counts as rest.
-        const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+        const TERM_ROUNDING: f64 = 64.0 * f64::EPSILON;
         let mut gradient = Gradient::new();
         measure.gradient(&self.at, &mut gradient);
         let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
@@ -480,7 +480,7 @@ impl State {
             size(q_dot) + (acceleration * self.pose.time).abs(),
             size(q_ddot) + quadratic.abs(),
         ];
-        sizes.map(|size| ROUNDINGS * size)
+        sizes.map(|size| TERM_ROUNDING * size)
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.

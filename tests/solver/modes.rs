@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use crate::common::{assembled, parse, pasted};
-use biela::kinematics::{Error, Mode, Modes, Path, Solver, Verdict};
+use biela::kinematics::{AssemblyMode, Error, Modes, Path, Solver, Verdict};
 use biela::mechanism::Mechanism;
 
 fn shipped_text(name: &str) -> String {
@@ -36,7 +36,7 @@ fn modes_of(text: &str) -> Modes {
     modes
 }
 
-fn estimates(mechanism: &Mechanism, mode: &Mode) -> String {
+fn estimates(mechanism: &Mechanism, mode: &AssemblyMode) -> String {
     let bodies = mechanism.bodies.iter().zip(mode.q.chunks_exact(3));
     bodies.fold(String::new(), |mut out, (body, q)| {
         let [x, y, phi] = [q[0], q[1], q[2]];

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use biela::dynamics::Motion;
 use biela::kinematics::{
-    Direction, Mode, Output, Path, Pose, RangeSettings, Solver, SolverChoices, offer_start,
+    AssemblyMode, Direction, Output, Path, Pose, RangeSettings, Solver, SolverChoices, offer_start,
 };
 use biela::mechanism::{Diagnostic, DriverId, Mechanism as Model, Order, ParameterId, Source};
 use biela_tools::cli;
@@ -328,7 +328,7 @@ impl Mechanism {
             let modes = runner.motion.solver.modes()?;
             let count = 3 * self.model.bodies.len();
             let others = modes.others.into_iter();
-            let others = others.map(|Mode { q, rcond, .. }| (q[..count].to_vec(), rcond));
+            let others = others.map(|AssemblyMode { q, rcond, .. }| (q[..count].to_vec(), rcond));
             Ok((others.collect(), modes.complete))
         })
     }

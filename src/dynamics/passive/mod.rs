@@ -31,7 +31,7 @@ use friction::Rubbing;
 
 /// Least gap, speed and acceleration that are rounding, in radians or sizes of the mechanism: some
 /// hundred roundings.
-pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+pub(super) const PLACE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A speed, or an acceleration, of so many roundings may be rest: 1e-8 radians or sizes of the mechanism
 /// per second. The instant of an event is not known much better.
 pub(super) const SLOW: f64 = 1e6;
@@ -386,7 +386,7 @@ impl PassiveForces {
                 self.rows[(k, driver)] = solver.coordinate(relation, unit).first();
             }
             let is_angle = passive.coordinate.kind.is_angle();
-            let least = ROUNDINGS * if is_angle { 1.0 } else { solver.size() };
+            let least = PLACE_ROUNDING * if is_angle { 1.0 } else { solver.size() };
             let own = solver.coordinate_roundings(relation, motion.coasting());
             to.roundings = own.map(|rounding| rounding.max(least));
             (to.force, to.force_rounding) = (0.0, 0.0);
@@ -448,7 +448,7 @@ impl PassiveForces {
     /// Returns whether a coordinate depends on held coordinates alone, so that it rests with them.
     fn is_held_by_others(&mut self, k: usize, freedoms: &[DriverId], lower: &DMatrix<f64>) -> bool {
         /// Part of a row that is rounding, beside bodies of very different masses.
-        const ROUNDING: f64 = 1e-6;
+        const DEPENDENT_ROW: f64 = 1e-6;
         let count = self.holding.len();
         let (columns, mut own) = self.columns.columns_range_pair_mut(..count, count);
         write_column((&self.rows, k), freedoms, lower, own.as_mut_slice());
@@ -463,7 +463,7 @@ impl PassiveForces {
         (0..row.len()).all(|driver| {
             let held = self.holding.iter().zip(&*parts);
             let of_held = held.map(|(&k, part)| part * self.rows[(k, driver)]);
-            (row[driver] - of_held.sum::<f64>()).abs() <= ROUNDING * largest
+            (row[driver] - of_held.sum::<f64>()).abs() <= DEPENDENT_ROW * largest
         })
     }
 

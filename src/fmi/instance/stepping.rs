@@ -7,7 +7,7 @@ use crate::fmi::status::Status;
 
 /// Roundings of a time within which two times are one: a host that multiplies makes two per point, and
 /// the sum of point and step size is rounded too.
-const ROUNDINGS: f64 = 4.0;
+const TIME_ROUNDINGS: f64 = 4.0;
 /// Part of a step within which two times are one: some hosts count time in nanoseconds.
 const PART_OF_STEP: f64 = 1e-6;
 /// Part of a step within which a dead point is located.
@@ -16,7 +16,7 @@ const LOCATED: f64 = 1e-9;
 /// Returns the difference within which two times of an experiment near `time`, with steps of size `h`,
 /// are one.
 pub(super) fn time_rounding(time: f64, h: f64) -> f64 {
-    (ROUNDINGS * f64::EPSILON * time.abs()).max(PART_OF_STEP * h)
+    (TIME_ROUNDINGS * f64::EPSILON * time.abs()).max(PART_OF_STEP * h)
 }
 
 impl<M: Model> Instance<M> {

@@ -35,7 +35,7 @@ const STEPS: u8 = 5;
 /// Difference between given and actual change in such a step, relative to the larger one.
 const DIFFERENCE: f64 = 0.5;
 /// Largest change that may be rounding, relative to 1 plus the larger value.
-const ROUNDING: f64 = 1e-9;
+const NO_CHANGE: f64 = 1e-9;
 
 impl Monitor {
     /// Compares given rates with the motion from one sample to the next. Returns a contradiction
@@ -60,7 +60,7 @@ impl Monitor {
             };
             let (actual, given) = (v1 - v0, 0.5 * h * (r0 + r1));
             let largest = actual.abs().max(given.abs());
-            if largest <= ROUNDING * (1.0 + v0.abs().max(v1.abs())) {
+            if largest <= NO_CHANGE * (1.0 + v0.abs().max(v1.abs())) {
                 continue;
             }
             let contradicts = (actual - given).abs() > DIFFERENCE * largest;

@@ -9,8 +9,8 @@ use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
 use crate::kinematics::{
-    Alignment, BlockChoices, Crossing, Member, Origin, PivotOrder, Polynomial, Pose, Progress,
-    Relation, SolverChoices,
+    Alignment, BlockChoices, Crossing, LineRelation, Member, Origin, PivotOrder, Polynomial, Pose,
+    Progress, SolverChoices,
 };
 use crate::mechanism::{BodyId, Corner, DriverId, Extrapolation, Jet, RateSource};
 
@@ -361,7 +361,7 @@ fn visit_alignment(
     codec: &mut impl Codec,
 ) -> Result<(), Unreadable> {
     let Alignment { relation, members } = alignment;
-    codec.one_of(relation, &Relation::ALL)?;
+    codec.one_of(relation, &LineRelation::ALL)?;
     codec.resize(members, most, || Member::Body(BodyId(0)))?;
     codec.each(members, |codec, member| {
         let (mut kind, mut index) = match *member {

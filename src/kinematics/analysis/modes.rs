@@ -16,7 +16,7 @@ use crate::kinematics::system::System;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
     /// The modes found, nearest the estimates first.
-    pub others: Vec<Mode>,
+    pub others: Vec<AssemblyMode>,
     /// Number of starts of each block of which not all branches are known, on each branch of the
     /// blocks before it; zero if there is no such block.
     pub starts: usize,
@@ -27,7 +27,7 @@ pub struct Modes {
 
 /// One assembly mode.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mode {
+pub struct AssemblyMode {
     /// Generalized coordinates, \[m, m, rad\] for each body, then the joint unknowns. Each angle is
     /// the representative nearest its estimate.
     pub q: Vec<f64>,
@@ -63,14 +63,14 @@ pub(in crate::kinematics) fn modes(
         starts,
         complete,
     } = close_all(compiled, state, &estimate, effort);
-    let mut others: Vec<Mode> = Vec::new();
+    let mut others: Vec<AssemblyMode> = Vec::new();
     for pose in poses {
         state.pose.q.copy_from_slice(&pose.q);
         state.move_to_pose(&compiled.system);
         if is_at(&compiled.system, state, &home.q) {
             continue;
         }
-        others.push(Mode {
+        others.push(AssemblyMode {
             rcond: state.rcond(compiled),
             distance: distance(&compiled.system, state, &estimate),
             q: pose.q,

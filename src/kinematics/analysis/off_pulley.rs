@@ -7,7 +7,7 @@ use crate::kinematics::system::System;
 use crate::mechanism::{MarkerId, show_time};
 
 /// Angle of an arc below zero that is rounding \[rad\].
-const ROUNDING: f64 = 1e-9;
+const EMPTY_ARC: f64 = 1e-9;
 
 /// A rope that begins to leave a pulley: straight, it would pass on the other side.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,7 @@ pub(in crate::kinematics) fn off_pulleys<'a>(
     let mechanism = system.mechanism();
     let pulleys = arcs(system, state).zip(off);
     pulleys.filter_map(move |((joint, marker, angle), off)| {
-        let is_off = angle < -ROUNDING;
+        let is_off = angle < -EMPTY_ARC;
         let begins = is_off && !*off;
         *off = is_off;
         begins.then(|| OffPulley {

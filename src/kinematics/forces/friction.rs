@@ -271,7 +271,7 @@ impl Friction {
     /// end.
     fn find(&mut self) -> bool {
         /// Part of the largest friction at which a change is rounding.
-        const ROUNDING: f64 = 16.0 * f64::EPSILON;
+        const NO_STEP: f64 = 16.0 * f64::EPSILON;
         let value = |id: ParameterId| self.parameters[id.index()];
         let count = self.list.len();
         for _ in 0..MOST_STEPS {
@@ -309,7 +309,7 @@ impl Friction {
             if !largest.is_finite() {
                 return false;
             }
-            if change <= ROUNDING * largest {
+            if change <= NO_STEP * largest {
                 return true;
             }
         }

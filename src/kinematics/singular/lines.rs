@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::near::{FREE, LARGEST_BLOCK};
-use crate::kinematics::alignment::{Alignment, Member, Relation};
+use crate::kinematics::alignment::{Alignment, LineRelation, Member};
 use crate::kinematics::constraint::Gradient;
 use crate::kinematics::constraint::configuration::{Configuration, perp};
 use crate::kinematics::origin::Origin;
@@ -360,7 +360,7 @@ impl<'a> Moving<'a> {
             && !self.is_contact(line.of)
         {
             return Some(Alignment {
-                relation: Relation::InLine,
+                relation: LineRelation::InLine,
                 members: self.ordered(vec![pin.body_of(group), line.of]),
             });
         }
@@ -370,7 +370,7 @@ impl<'a> Moving<'a> {
         }
         members.push(Member::Origin(pin.origin));
         Some(Alignment {
-            relation: Relation::ThroughPin,
+            relation: LineRelation::ThroughPin,
             members,
         })
     }
@@ -387,7 +387,7 @@ impl<'a> Moving<'a> {
         let across = |line: &Line| line.direction.perp(&first.direction);
         if rest.iter().all(|line| across(line).abs() <= self.tolerance) {
             return Some(Alignment {
-                relation: Relation::Parallel,
+                relation: LineRelation::Parallel,
                 members: members(),
             });
         }
@@ -398,7 +398,7 @@ impl<'a> Moving<'a> {
         let meet = center.iter().all(|part| part.is_finite())
             && lines.iter().all(|line| self.passes(line, center));
         meet.then(|| Alignment {
-            relation: Relation::Concurrent,
+            relation: LineRelation::Concurrent,
             members: members(),
         })
     }
@@ -438,7 +438,7 @@ impl<'a> Moving<'a> {
             });
         members.extend(links);
         Alignment {
-            relation: Relation::Free,
+            relation: LineRelation::Free,
             members,
         }
     }

@@ -7,7 +7,7 @@ use crate::mechanism::number::Unary;
 
 /// Largest difference from a quarter turn that rounding explains \[quarter turns\]: degrees are
 /// multiplied by a rounded constant.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const OFF_QUARTER: f64 = 4.0 * f64::EPSILON;
 
 impl Expression {
     /// Returns `[r cos(angle), r sin(angle)]`; `None` if these would need more than [`MAX_STACK`]
@@ -52,7 +52,7 @@ impl Expression {
 fn cos_and_sin(angle: f64) -> [f64; 2] {
     let quarters = angle / FRAC_PI_2;
     let nearest = quarters.round();
-    if (quarters - nearest).abs() > ROUNDING * nearest.abs().max(1.0) {
+    if (quarters - nearest).abs() > OFF_QUARTER * nearest.abs().max(1.0) {
         return [angle.cos(), angle.sin()];
     }
     match nearest.rem_euclid(4.0) {

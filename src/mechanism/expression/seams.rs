@@ -11,7 +11,7 @@ const NARROWEST: f64 = 1.0 / (1_u64 << 26) as f64;
 /// Width of such a part in units of the variable, or of its magnitude where that is more: some
 /// roundings. Halved, seams in ranges of a few roundings take twice as many parts. Doubled, a jump
 /// and its return within 2e-15 count as none.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const NARROW_ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 /// Distance from a seam at which the function is evaluated, likewise: rounding moves the jumps of
 /// parts, so that next to them they do not cancel. A number counts as whole some 4e-15 of it below
 /// one: halved, that is still far from there. Doubled, jumps of parts 2e-12 apart count as one.
@@ -64,7 +64,7 @@ pub(in crate::mechanism) fn seams(
         count = last;
         let [from, to] = open[last];
         let ends = [value(from), value(to)];
-        let is_narrow = to - from <= NARROWEST || ends[1] - ends[0] <= ROUNDING * unit;
+        let is_narrow = to - from <= NARROWEST || ends[1] - ends[0] <= NARROW_ROUNDINGS * unit;
         if is_smooth(Interval::new(ends[0], ends[1])) {
             if !seam.take().is_none_or(&mut meets) {
                 return false;

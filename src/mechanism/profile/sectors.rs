@@ -31,7 +31,7 @@ const NARROW: f64 = 0.125;
 /// in both.
 const OVERLAP: f64 = 1.0 / 1024.0;
 /// Bound of the rounding of an expansion, relative to its terms: some ten operations.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const TERM_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Number `index` of the 2^`level` equal parts of the turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +142,7 @@ impl Expansion {
             middle: [0, 1, 2].map(|k| terms[k].midpoint()),
             // The offset from the middle is below one.
             errors: [0, 1, 2].map(|k| {
-                let rounding = ROUNDING * (terms[k].magnitude() + terms[k + 1].magnitude());
+                let rounding = TERM_ROUNDING * (terms[k].magnitude() + terms[k + 1].magnitude());
                 terms[k].high - terms[k].low + rounding
             }),
             third,

@@ -315,7 +315,7 @@ impl<'a> Context<'a> {
     /// later, with the same number or expression, is left out; any other there is an error.
     pub(super) fn close_turn(&mut self, table: &mut PointTable) -> Option<()> {
         // Angles written in degrees come back to within some ulp of a turn.
-        const ROUNDING: f64 = 1e-12;
+        const OFF_TURN: f64 = 1e-12;
         let (Some([start, _]), Some([end, _])) = (table.values.first(), table.values.last()) else {
             return Some(());
         };
@@ -323,11 +323,11 @@ impl<'a> Context<'a> {
         let points = &mut table.table.points;
         let is_repeated =
             points.first().map(|point| &point[1]) == points.last().map(|point| &point[1]);
-        if excess.abs() <= ROUNDING && is_repeated {
+        if excess.abs() <= OFF_TURN && is_repeated {
             points.pop();
             table.places.pop();
             table.values.pop();
-        } else if excess >= -ROUNDING {
+        } else if excess >= -OFF_TURN {
             let [start, end] = shown_apart(start.to_degrees(), end.to_degrees());
             let last = table.places.len() - 1;
             let message = format!(

@@ -20,7 +20,7 @@ use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;
 use crate::cli::told::suggested_estimates::as_estimates;
 use biela::kinematics::{
-    self, Mode, Modes, Origin, Path, Play, Rates, Solver, System, offer_start,
+    self, AssemblyMode, Modes, NeededPlay, Origin, Path, Rates, Solver, System, offer_start,
 };
 use biela::mechanism::{
     CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
@@ -403,14 +403,14 @@ fn describe_bodies(solver: &Solver) -> String {
 
 /// Returns the play that a joint needs over a motion, if constraints contradict each other.
 fn describe_play(mechanism: &Arc<Mechanism>, error: &kinematics::Error) -> String {
-    let Some(play) = Play::find(mechanism, error) else {
+    let Some(play) = NeededPlay::find(mechanism, error) else {
         return String::new();
     };
     let driver = &mechanism.drivers[play.driver.index()];
     let [from, to] = play
         .range
         .map(|value| with_unit(driver.coordinate.kind, value));
-    let Play { open, .. } = play;
+    let NeededPlay { open, .. } = play;
     let (joint, play) = (&open.origin, open.measured());
     let name = &driver.name;
     format!(
@@ -441,7 +441,8 @@ fn mention_modes(solver: &Solver, modes: &Modes) -> String {
         let phi = part(2);
         // Zeros are what a body without an estimate has.
         let is_estimated = (0..3).any(|k| part(k) != 0.0);
-        let is_nearer = |mode: &Mode| (mode.q[3 * index + 2] - phi).abs() + FAR < moved.angle;
+        let is_nearer =
+            |mode: &AssemblyMode| (mode.q[3 * index + 2] - phi).abs() + FAR < moved.angle;
         if is_estimated && modes.others.iter().any(is_nearer) {
             let angle = shown(moved.angle.to_degrees());
             let _ = writeln!(

@@ -7,7 +7,7 @@ use biela::kinematics::{Error, ForceQuantity, Output, OutputSource, Solution, So
 use biela::mechanism::{DriverId, Expression, Indeterminate, Jet, Mechanism, Unit, shown};
 
 /// Magnitude below which a force of a few newtons is rounding.
-const ROUNDING: f64 = 1e-12;
+const NO_FORCE: f64 = 1e-12;
 
 /// The forces of a mechanism at rest, all inputs of forces being zero.
 pub(in crate::cli) struct Forces {
@@ -100,7 +100,7 @@ impl Forces {
                 ForceQuantity::Effort(driver) => solution.effort_rounding(solver, driver),
                 _ => 0.0,
             };
-            let is_rounding = value.abs() < ROUNDING || value.abs() <= rounding;
+            let is_rounding = value.abs() < NO_FORCE || value.abs() <= rounding;
             let value = if is_rounding { 0.0 } else { value };
             (!trivial).then_some((output.name, value, output.unit.name))
         });

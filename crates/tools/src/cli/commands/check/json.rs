@@ -10,7 +10,7 @@ use super::{NEARLY_SINGULAR, equations_of_joints, excursions};
 use crate::cli::given::input::cannot_rest;
 use crate::cli::told::error::Error;
 use biela::dynamics::KeptStart;
-use biela::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System, offer_start};
+use biela::kinematics::{self, NeededPlay, OpenJoint, Path, Rates, Solver, System, offer_start};
 use biela::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
 /// Returns the report on a file and the outcome of the command.
@@ -66,7 +66,7 @@ pub(in crate::cli) fn report_on(source: &Source, modes: bool) -> Value {
                 report["error"]["open"] = gaps(open);
                 report["error"]["nearest"] = poses(&mechanism, nearest);
             }
-            if let Some(play) = Play::find(&mechanism, &error) {
+            if let Some(play) = NeededPlay::find(&mechanism, &error) {
                 report["error"]["play"] = json!({
                     "driver": mechanism.drivers[play.driver.index()].name,
                     "from": play.range[0],

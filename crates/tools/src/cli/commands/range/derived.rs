@@ -10,7 +10,7 @@ use biela::mechanism::{DerivedMeasure, DriverId, Order, Unit, shown};
 const UNIT_SPEED: f64 = 1.0;
 
 /// Part of the largest value that is rounding.
-const ROUNDING: f64 = 1e-12;
+const NO_VALUE: f64 = 1e-12;
 
 /// A computed measure over the range of a driver.
 pub(super) struct DerivedRange {
@@ -96,7 +96,7 @@ impl DerivedRange {
     pub(super) fn shown(&self, measure: &DerivedMeasure) -> Option<[String; 2]> {
         let values = self.extremes?.map(|extreme| extreme.value);
         let size = values.map(f64::abs).into_iter().filter(|s| s.is_finite());
-        let rounding = ROUNDING * size.fold(0.0, f64::max);
+        let rounding = NO_VALUE * size.fold(0.0, f64::max);
         let unit = measure.unit.map_or_else(String::new, Unit::suffix);
         Some(values.map(|value| match value {
             f64::INFINITY => "infinity".to_owned(),

@@ -10,7 +10,7 @@ use biela::mechanism::{DriverId, shown};
 
 /// Largest reaction that is rounding, as a part of the largest effort: that of a pin beside the one
 /// that a spring and its driver load.
-const ROUNDING: f64 = 1e-12;
+const NO_REACTION: f64 = 1e-12;
 
 /// Forces at places in the range of a driver.
 struct Loads<'a> {
@@ -117,7 +117,7 @@ pub(super) fn describe_largest(
         None => {}
     }
     match reaction {
-        Some(Largest::Value((force, joint), at)) if force > ROUNDING * most => {
+        Some(Largest::Value((force, joint), at)) if force > NO_REACTION * most => {
             let (force, at) = (shown(force), about(kind, at));
             let joint = &mechanism.joints[joint].name;
             tell(&format!(

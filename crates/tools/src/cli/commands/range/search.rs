@@ -27,7 +27,7 @@ const LAST_WIDTH: f64 = 1e-9;
 const NEAR: f64 = 1e-5;
 
 /// Part of the range below which a place is zero: a flat maximum has half of the digits.
-const ROUNDING: f64 = 1e-7;
+const FLAT: f64 = 1e-7;
 
 /// Least ratio of a pole to a size that nine in ten samples keep below: a pole of a square root is
 /// some ten thousand times as high where the search ends, rounding is as high as other rounding.
@@ -48,7 +48,7 @@ pub(super) fn largest<T: Copy>(
             && (index == last || of(index) >= of(index + 1))
     };
     let usual = usual(samples);
-    let rounding = ROUNDING * (samples[last].0 - samples[0].0);
+    let rounding = FLAT * (samples[last].0 - samples[0].0);
     let rounded = |place: f64| if place.abs() < rounding { 0.0 } else { place };
     let mut peaks: Vec<usize> = (0..=last).filter(is_peak).collect();
     peaks.sort_by(|a, b| of(*b).total_cmp(&of(*a)));

@@ -18,7 +18,7 @@ use crate::mechanism::{DriverId, Mechanism};
 
 /// The play that one joint or constraint needs for a motion, all others being exact.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Play {
+pub struct NeededPlay {
     /// The driver that moves; the others are held.
     pub driver: DriverId,
     /// The driver's values between which all others close \[m or rad\].
@@ -30,7 +30,7 @@ pub struct Play {
 /// Poses per turn of an angle; those of a length are this part of twice the mechanism's size apart.
 const POSES: usize = 180;
 
-impl Play {
+impl NeededPlay {
     /// Moves a mechanism whose constraints contradict each other from its start values over the
     /// range of its first driver of an angle, or else of its first driver: up to a turn, or a
     /// change by twice the mechanism's size. The joint or constraint of the contradictory set that
