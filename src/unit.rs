@@ -22,6 +22,8 @@ pub struct Dimension {
     pub s: i8,
     /// Exponent of the radian.
     pub rad: i8,
+    /// Exponent of the ampere.
+    pub a: i8,
 }
 
 /// A unit for showing values to people: shown = factor × SI.
@@ -36,7 +38,11 @@ pub struct DisplayUnit {
 }
 
 const fn dimension(kg: i8, m: i8, s: i8, rad: i8) -> Dimension {
-    Dimension { kg, m, s, rad }
+    electric([kg, m, s, rad], 0)
+}
+
+const fn electric([kg, m, s, rad]: [i8; 4], a: i8) -> Dimension {
+    Dimension { kg, m, s, rad, a }
 }
 
 const LENGTH: Dimension = Dimension::LENGTH;
@@ -55,26 +61,28 @@ impl Dimension {
     /// Dimension of an angular velocity.
     pub const ANGULAR_VELOCITY: Self = dimension(0, 0, -1, 1);
 
-    fn exponents(self) -> [i8; 4] {
-        [self.kg, self.m, self.s, self.rad]
+    fn exponents(self) -> [i8; 5] {
+        [self.kg, self.m, self.s, self.rad, self.a]
     }
 
     /// Returns the base units that it has, with their exponents.
     pub fn base_units(self) -> impl Iterator<Item = (&'static str, i8)> {
-        let all = ["kg", "m", "s", "rad"].into_iter().zip(self.exponents());
+        let all = ["kg", "m", "s", "rad", "A"]
+            .into_iter()
+            .zip(self.exponents());
         all.filter(|(_, exponent)| *exponent != 0)
     }
 
-    fn of(exponents: [Option<i8>; 4]) -> Option<Self> {
-        let [kg, m, s, rad] = exponents;
-        Some(dimension(kg?, m?, s?, rad?))
+    fn of(exponents: [Option<i8>; 5]) -> Option<Self> {
+        let [kg, m, s, rad, a] = exponents;
+        Some(electric([kg?, m?, s?, rad?], a?))
     }
 
     /// Returns the dimension of a product; `None` if an exponent is too large.
     #[must_use]
     pub fn times(self, other: Self) -> Option<Self> {
         let (a, b) = (self.exponents(), other.exponents());
-        Self::of([0, 1, 2, 3].map(|k| a[k].checked_add(b[k])))
+        Self::of([0, 1, 2, 3, 4].map(|k| a[k].checked_add(b[k])))
     }
 
     /// Returns the dimension of a power; `None` if an exponent is too large or no whole number.
@@ -91,7 +99,7 @@ impl Dimension {
     /// length: radians count only where nothing else does.
     #[must_use]
     pub fn agrees_with(self, other: Self) -> bool {
-        let is_same = [self.kg, self.m, self.s] == [other.kg, other.m, other.s];
+        let is_same = [self.kg, self.m, self.s, self.a] == [other.kg, other.m, other.s, other.a];
         is_same || self == Self::ONE || other == Self::ONE
     }
 }
@@ -138,9 +146,23 @@ impl Unit {
     /// `N.m.s/rad`: coefficient of a torsion damper.
     pub const NEWTON_METRE_SECOND_PER_RADIAN: Self =
         Self::new("N.m.s/rad", dimension(1, 2, -1, -1));
+    /// `Pa`.
+    pub const PASCAL: Self = Self::new("Pa", dimension(1, -1, -2, 0));
+    /// `Hz`.
+    pub const HERTZ: Self = Self::new("Hz", dimension(0, 0, -1, 0));
+    /// `A`.
+    pub const AMPERE: Self = Self::new("A", electric([0; 4], 1));
+    /// `V`.
+    pub const VOLT: Self = Self::new("V", electric([1, 2, -3, 0], -1));
+    /// `ohm`.
+    pub const OHM: Self = Self::new("ohm", electric([1, 2, -3, 0], -2));
+    /// `N.m/A`: constant of a motor.
+    pub const NEWTON_METRE_PER_AMPERE: Self = Self::new("N.m/A", electric([1, 2, -2, 0], -1));
+    /// `V.s/rad`: the same.
+    pub const VOLT_SECOND_PER_RADIAN: Self = Self::new("V.s/rad", electric([1, 2, -2, -1], -1));
 
     /// Every unit that a file may name, in the order of the format's documentation.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 26] = [
         Self::ONE,
         Self::METRE,
         Self::RADIAN,
@@ -160,6 +182,13 @@ impl Unit {
         Self::NEWTON_METRE_PER_RADIAN,
         Self::NEWTON_SECOND_PER_METRE,
         Self::NEWTON_METRE_SECOND_PER_RADIAN,
+        Self::PASCAL,
+        Self::HERTZ,
+        Self::AMPERE,
+        Self::VOLT,
+        Self::OHM,
+        Self::NEWTON_METRE_PER_AMPERE,
+        Self::VOLT_SECOND_PER_RADIAN,
     ];
 
     /// Returns the unit as it stands behind a number: a blank and its symbol, nothing for a plain

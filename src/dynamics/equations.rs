@@ -110,9 +110,11 @@ impl Equations {
         let (count, unknowns) = (freedoms.len(), solver.pose().q.len());
         let passive = PassiveForces::new(solver, count);
         let drivers = solver.pose().drivers.iter();
+        let mut loads = vec![0.0; forces.loads()];
+        solver.mechanism().write_load_starts(&mut loads);
         let point = Point {
             drivers: drivers.map(|value| Jet::constant(*value)).collect(),
-            loads: vec![0.0; forces.loads()],
+            loads,
             passive: vec![Passive::NONE; passive.list.len()],
             energy: 0.0,
             kinetic_energy: 0.0,

@@ -19,7 +19,7 @@ use crate::mechanism::{DriverId, Mechanism, Order};
 pub struct StateSpace {
     /// Names of the states: value and velocity of each freedom.
     pub states: Vec<String>,
-    /// Names of the inputs: sizes of forces, then value, velocity and acceleration of each driver that
+    /// Names of the inputs: those of the file, sizes of forces, then value, velocity and acceleration of each driver that
     /// is an input.
     pub inputs: Vec<String>,
     /// Names of the outputs.
@@ -201,7 +201,7 @@ impl FreeMotion {
 
 /// Returns the inputs: sizes of forces, then those of drivers.
 fn inputs(mechanism: &Mechanism) -> Vec<Change> {
-    let forces = (0..mechanism.force_inputs().len()).map(Change::Force);
+    let forces = (0..mechanism.load_inputs().len()).map(Change::Force);
     let drivers = mechanism.drivers.iter().enumerate();
     let drivers = drivers.filter(|(_, driver)| driver.is_given());
     let of_drivers = drivers
@@ -211,7 +211,7 @@ fn inputs(mechanism: &Mechanism) -> Vec<Change> {
 
 /// Returns the names that the variables have in the FMU.
 fn names(mechanism: &Mechanism, changes: &[Change]) -> Vec<String> {
-    let forces = mechanism.force_inputs();
+    let forces = mechanism.load_inputs();
     let name = |change: &Change| match *change {
         Change::Force(place) => forces[place].name.clone(),
         Change::Driver(driver, order) => {

@@ -19,7 +19,7 @@ pub enum Notice<'a> {
     Approach(Approach, f64),
     /// A change point was passed before a time \[s\].
     Crossing(&'a Crossing, &'a Solver, f64),
-    /// A driver is beyond a limit.
+    /// A driver or an input is beyond a limit.
     Excursion(Excursion<'a>),
     /// A rope leaves a pulley.
     OffPulley(OffPulley<'a>),
@@ -71,13 +71,18 @@ impl Motion {
         let values = values.filter(move |_| goes_on).zip(&mut told.beyond);
         let excursions = values
             .filter_map(|((driver, value), beyond)| driver.excursion(*value, pose.time, beyond));
+        let inputs = mechanism.inputs.iter();
+        let inputs = inputs.filter(move |input| goes_on && input.given.is_none());
+        let inputs = inputs.zip(&solution.loads).zip(&mut told.inputs_beyond);
+        let of_inputs = inputs
+            .filter_map(|((input, value), beyond)| input.excursion(*value, pose.time, beyond));
         let off_pulleys = goes_on.then(|| solver.off_pulleys(&mut told.off_pulleys));
         let forces = solution.forces().filter(|_| *knows_contacts);
         let lift_offs = forces.map(|forces| solver.lift_offs(forces, &mut told.lifted));
         happenings
             .chain(approach.map(|approach| Notice::Approach(approach, pose.time)))
             .chain(crossings)
-            .chain(excursions.map(Notice::Excursion))
+            .chain(excursions.chain(of_inputs).map(Notice::Excursion))
             .chain(off_pulleys.into_iter().flatten().map(Notice::OffPulley))
             .chain(lift_offs.into_iter().flatten().map(Notice::LiftOff))
     }

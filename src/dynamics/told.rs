@@ -9,6 +9,8 @@ pub struct Told {
     pub near_singular: bool,
     /// Whether each driver is beyond a limit.
     pub beyond: Vec<bool>,
+    /// Whether each input is beyond a limit.
+    pub inputs_beyond: Vec<bool>,
     /// Whether a rope has left each pulley.
     pub off_pulleys: Vec<bool>,
     /// Whether each contact pulls.
@@ -25,6 +27,7 @@ impl Told {
         Self {
             near_singular: false,
             beyond: vec![false; mechanism.drivers.len()],
+            inputs_beyond: vec![false; mechanism.inputs.len()],
             off_pulleys,
             lifted: vec![false; contacts],
         }

@@ -15,11 +15,12 @@
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
 //! | `coupling` | [`CoordinateEquation`]: an equation between coordinates |
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
+//! | `input` | [`Input`], [`LoadInput`]: what a host gives while the mechanism moves |
 //! | `force_quantity`, `reaction` | [`ForceQuantity`]: forces, energies and inertias, and their names |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `play` | [`Play`]: joints that open |
 //! | `stop` | [`Stop`]: limits of a coordinate |
-//! | `excursion` | [`Excursion`]: a driver beyond its limits |
+//! | `excursion` | [`Excursion`]: a driver or an input beyond its limits |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
 //! | `setting` | start values of the FMU's settings |
 //! | `names`, `synonym`, `lookup`, `id` | names, other words for them, and what they stand for |
@@ -41,6 +42,7 @@ mod force_quantity;
 mod friction;
 mod function;
 mod id;
+mod input;
 mod joint;
 mod lookup;
 mod motion;
@@ -70,7 +72,7 @@ pub use coupling::{CoordinateEquation, MOST_COUPLED, Phase};
 pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use excursion::Excursion;
+pub use excursion::{Excursion, Excursive};
 pub use expression::{
     Expression, ExpressionError, LinearForm, Variable, constant, is_taken, names_in,
 };
@@ -86,6 +88,7 @@ pub use function::{
     PointFunction,
 };
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
+pub use input::{Input, LoadInput, LoadTarget};
 pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};
 pub use motion::{Law, Motion, MotionInForce, not_finite};
 pub use names::{did_you_mean, help, is_identifier, similar_identifier};
@@ -135,6 +138,8 @@ pub struct Mechanism {
     /// Parameters whose value uses other parameters, in an order in which each comes after those
     /// it uses.
     pub derivation_order: Vec<ParameterId>,
+    /// Numbers from outside.
+    pub inputs: Vec<Input>,
     /// Functions that expressions call.
     pub functions: Functions,
     /// Moving bodies.

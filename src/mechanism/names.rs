@@ -102,6 +102,17 @@ impl<'a, T: Copy> NameTable<'a, T> {
         self.meanings.get(name).copied()
     }
 
+    /// Returns all names with their meanings, in the order of the names.
+    pub(super) fn candidates_in_order(&self) -> Vec<(&'a str, T)> {
+        let mut all: Vec<_> = self
+            .meanings
+            .iter()
+            .map(|(name, of)| (*name, *of))
+            .collect();
+        all.sort_unstable_by_key(|(name, _)| *name);
+        all
+    }
+
     /// Returns help for a name that is not in the table: the nearest one, otherwise all if they are
     /// few.
     pub(super) fn help(&self, name: &str) -> Option<String> {

@@ -411,7 +411,9 @@ mod tests {
         #[test]
         fn pieces_meet(
             points in (2_usize..9).prop_flat_map(points),
-            ends in prop::sample::select(vec![Ends::Clamped, Ends::Natural, Ends::Periodic]),
+            ends in prop::sample::select(vec![
+                Ends::Clamped, Ends::Natural, Ends::Linear, Ends::Zero, Ends::Periodic,
+            ]),
         ) {
             let spline = spline(&points, ends);
             prop_assert!(spline.is_valid());
@@ -432,7 +434,7 @@ mod tests {
                 Ends::Clamped => {
                     prop_assert!(first[1].abs() < ROUNDING && end[1].abs() < ROUNDING);
                 }
-                Ends::Natural => {
+                Ends::Natural | Ends::Linear | Ends::Zero => {
                     prop_assert!(first[2].abs() < ROUNDING && end[2].abs() < ROUNDING);
                 }
                 Ends::Periodic => {

@@ -15,7 +15,7 @@ use crate::common::{Instance, folder, instance_of, parse, shipped};
 use crate::differences::{DIFFERENCE, differences};
 
 /// Mechanisms with a force input, if they have one, and with their freedoms.
-const FREE: [(&str, Option<&str>, &[&str]); 10] = [
+const FREE: [(&str, Option<&str>, &[&str]); 11] = [
     ("pendulum_free", None, &["swing"]),
     ("double_pendulum", None, &["shoulder", "elbow"]),
     ("engine_free", Some("load.effort"), &["crank_angle"]),
@@ -26,6 +26,7 @@ const FREE: [(&str, Option<&str>, &[&str]); 10] = [
     ("swinging_tip", None, &["swing"]),
     ("cart_pole", Some("push.effort"), &["travel", "lean"]),
     ("andrews_free", None, &["beta"]),
+    ("wiper_motor", Some("voltage"), &["motor_angle"]),
 ];
 
 /// The four-bar with longer crank and coupler, and with its rocker's angle as the freedom. No link

@@ -12,6 +12,7 @@ mod clauses;
 mod fmu_state;
 mod free;
 mod hostile;
+mod inputs;
 mod instance;
 mod model;
 mod model_description;

@@ -104,15 +104,14 @@ impl Scenario {
         let mut driven = Mechanism::clone(own);
         let mut samples = Vec::new();
         let mut loads: Vec<(String, Vec<f64>)> = Vec::new();
-        let inputs = own.force_inputs();
+        let inputs = own.load_inputs();
         for (name, drive) in drives {
             if let Some(place) = inputs.iter().position(|input| input.name == name) {
                 let input = &inputs[place];
                 match drive {
                     Drive::Text(text) => {
                         let size = expression(own, &text)?;
-                        let load = &mut driven.forces[input.force].load;
-                        load.set_component(input.component, size);
+                        driven.give_load(input.target, size);
                     }
                     Drive::Samples(orders) => {
                         check_samples(&name, &orders, times.len())?;
@@ -156,7 +155,7 @@ impl Scenario {
 
 /// Returns the sizes of inputs of forces by their places among those of the driven mechanism.
 fn places(driven: &Mechanism, loads: Vec<(String, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
-    let inputs = driven.force_inputs();
+    let inputs = driven.load_inputs();
     let placed = loads.into_iter().filter_map(|(name, sizes)| {
         let place = inputs.iter().position(|input| input.name == name)?;
         Some((place, sizes))

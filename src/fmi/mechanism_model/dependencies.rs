@@ -7,7 +7,9 @@ use super::variables::{Quantity, has_local_states};
 use crate::fmi::model_description::DependencyKind;
 use crate::fmi::variable::{Causality, Variable, place, value_reference};
 use crate::kinematics::{Dependencies, ForceQuantity, OutputSource, Structure};
-use crate::mechanism::{Coordinate, DriverId, Load, Mechanism, Order, Signal, Variable as Of};
+use crate::mechanism::{
+    Coordinate, DriverId, Expression, Load, Mechanism, Order, Signal, Variable as Of,
+};
 
 /// Kinds of dependency by value reference.
 pub(super) type Kinds = BTreeMap<u32, DependencyKind>;
@@ -236,23 +238,36 @@ impl<'a> DependencyTable<'a> {
     fn inputs_of_force(&self, force: ForceQuantity) -> Vec<Quantity> {
         let forces = &self.mechanism.forces;
         let uses_time = |load: &Load| load.expressions().iter().any(|e| e.uses(Of::Time));
+        let mut own = Vec::new();
         let (count, depends_on_time) = match force {
             ForceQuantity::Applied(force, _)
                 if !forces[force].load.is_input() && !self.is_passive(force) =>
             {
+                own = self.inputs_of_load(&forces[force].load);
                 (0, uses_time(&forces[force].load))
             }
             ForceQuantity::Inertia(_)
             | ForceQuantity::KineticEnergy
             | ForceQuantity::PotentialEnergy => (0, false),
             _ => (
-                self.mechanism.force_inputs().len(),
+                self.mechanism.load_inputs().len(),
                 forces.iter().any(|force| uses_time(&force.load)),
             ),
         };
         let inputs = (0..count).map(Quantity::ForceInput);
         let time = depends_on_time.then_some(Quantity::Time);
-        inputs.chain(time).collect()
+        inputs.chain(own).chain(time).collect()
+    }
+
+    /// Returns the inputs of the file on which the size of a force depends.
+    fn inputs_of_load(&self, load: &Load) -> Vec<Quantity> {
+        let ([places, _], _) = self.mechanism.load_places();
+        let variables = load.moving_expressions().flat_map(Expression::variables);
+        let places = variables.filter_map(|variable| match variable {
+            Of::Input(index) => places[index],
+            _ => None,
+        });
+        places.map(Quantity::ForceInput).collect()
     }
 
     /// Returns the mechanism's own parameters. A signal that no driver moves has rates of zero for any

@@ -1,4 +1,4 @@
-//! One input of a force.
+//! One input of the file or of a force.
 
 use crate::fmi::codec::{Codec, Unreadable};
 
@@ -14,6 +14,15 @@ pub(super) struct ForceInput {
 }
 
 impl ForceInput {
+    /// Makes an input with its value at the start.
+    pub(super) fn new(start: f64) -> Self {
+        Self {
+            value: start,
+            present: start,
+            ..Self::default()
+        }
+    }
+
     /// Returns the value as set by the host.
     pub(super) fn get(&self) -> f64 {
         self.value

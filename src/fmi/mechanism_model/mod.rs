@@ -131,7 +131,7 @@ struct Course {
     sources: Vec<[Source; 2]>,
     /// Inputs per driver; those of prescribed motions have no meaning.
     inputs: Vec<DriverInput>,
-    /// Inputs of forces, in the order of their variables.
+    /// Inputs of the file and of forces, in the order of the loads.
     force_inputs: Vec<ForceInput>,
     /// The motion of freedoms at the committed pose.
     free: Option<FreeState>,
@@ -169,7 +169,9 @@ impl Course {
             freshness: Freshness::Stale,
             sources: vec![[Source::default(); 2]; drivers],
             inputs: inputs.collect(),
-            force_inputs: vec![ForceInput::default(); mechanism.force_inputs().len()],
+            force_inputs: (mechanism.load_inputs().iter())
+                .map(|input| ForceInput::new(input.start))
+                .collect(),
             free,
             monitors: vec![Monitor::default(); drivers],
             path_progress: Progress::default(),
@@ -288,7 +290,7 @@ impl MechanismModel {
         self.set_freshness(Freshness::Stale);
     }
 
-    /// Sets an input of a force, on which no pose depends.
+    /// Sets an input of the file or of a force, on which no pose depends.
     fn set_force_input(&mut self, place: usize, value: f64) {
         self.course.force_inputs[place].set(value);
         if self.motion.free().is_some() {

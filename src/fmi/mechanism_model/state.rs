@@ -151,6 +151,7 @@ impl MechanismState {
         let Told {
             near_singular,
             beyond,
+            inputs_beyond,
             off_pulleys,
             lifted,
         } = told;
@@ -197,6 +198,7 @@ impl MechanismState {
             codec.flag(beyond)?;
         }
         codec.each(force_inputs, |codec, input| input.visit(codec))?;
+        codec.each(inputs_beyond, Codec::flag)?;
         if let Some(free) = free {
             visit_free(free, codec)?;
         }

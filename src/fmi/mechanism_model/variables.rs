@@ -9,7 +9,7 @@ use crate::dynamics::{self, KeptStart};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Budget, Dependencies, Output, OutputSource};
 use crate::mechanism::{
-    Driver, DriverId, DriverSource, Mechanism, Order, ParameterId, Signal, Unit,
+    Driver, DriverId, DriverSource, LoadTarget, Mechanism, Order, ParameterId, Signal, Unit,
 };
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
@@ -22,7 +22,7 @@ pub(super) const FORCE_TABLE_VERSION: u32 = 1;
 pub enum Quantity {
     /// Value, velocity or acceleration of a driver that is an input.
     Input(DriverId, Order),
-    /// Size of a force that is an input, by its place among all such inputs.
+    /// An input of the file, or the size of a force that is an input, by its place among all such inputs.
     ForceInput(usize),
     /// A parameter of the mechanism.
     Parameter(ParameterId),
@@ -55,7 +55,7 @@ pub enum Quantity {
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
 /// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
 /// from others, forces, solver, time, states that are no outputs, event indicators; in the file's
-/// order within each group; the solver's budget at the end.
+/// order within each group; the solver's budget, and the inputs of the file at the end.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
     let kept = KeptStart::of(mechanism);
@@ -71,7 +71,7 @@ pub(super) fn variables_of(
 ) -> Vec<Variable<Quantity>> {
     let mut table = Table::default();
     table.add_inputs(mechanism);
-    table.add_force_inputs(mechanism);
+    table.add_load_inputs(mechanism, |target| matches!(target, LoadTarget::Force(..)));
     table.add_parameters(mechanism);
     if mechanism.drivers.iter().any(Driver::is_given) {
         table.add_settings(mechanism);
@@ -90,6 +90,7 @@ pub(super) fn variables_of(
     }
     table.add_event_indicators(mechanism);
     table.add_budget(mechanism);
+    table.add_load_inputs(mechanism, |target| matches!(target, LoadTarget::Input(_)));
     table.list
 }
 
@@ -157,15 +158,20 @@ impl Table {
         }
     }
 
-    fn add_force_inputs(&mut self, mechanism: &Mechanism) {
-        for (place, input) in mechanism.force_inputs().into_iter().enumerate() {
-            self.add(
-                input.name,
-                input.description,
-                Quantity::ForceInput(place),
-                (Causality::Input, Variability::Continuous),
-                Kind::real(Some(input.unit), Some(0.0)),
-            );
+    fn add_load_inputs(&mut self, mechanism: &Mechanism, wanted: impl Fn(LoadTarget) -> bool) {
+        let inputs = mechanism.load_inputs().into_iter().enumerate();
+        for (place, input) in inputs.filter(|(_, input)| wanted(input.target)) {
+            let [min, max] = input.limits;
+            let kind = Kind::Real {
+                unit: input.unit,
+                start: Some(input.start),
+                min,
+                max,
+                nominal: None,
+            };
+            let traits = (Causality::Input, Variability::Continuous);
+            let quantity = Quantity::ForceInput(place);
+            self.add(input.name, input.description, quantity, traits, kind);
         }
     }
 

@@ -17,6 +17,8 @@ pub(super) struct AppliedForces {
     pub(super) list: Vec<AppliedForce>,
     /// What the sizes depend on that moves elsewhere.
     pub(super) seen: Vec<Seen>,
+    /// Sources of the mechanism's inputs.
+    pub(super) sources: Vec<Source>,
     /// Value and rate of each.
     seen_values: Vec<[f64; 2]>,
     /// Arguments of functions with corners or jumps, at the last pose.
@@ -57,12 +59,14 @@ pub(super) struct Circumstances<'a, N, P> {
     pub(super) time: N,
     /// All loads.
     pub(super) inputs: &'a [N],
+    /// Sources of the mechanism's inputs.
+    pub(super) sources: &'a [Source],
     /// What moves elsewhere, with value and rate.
     pub(super) seen: &'a [Seen],
     pub(super) seen_values: &'a [[N; 2]],
 }
 
-impl<N: Number, P> Circumstances<'_, N, P> {
+impl<N: Number, P: Fn(ParameterId) -> N> Circumstances<'_, N, P> {
     /// Returns the value of a variable that is no coordinate of the force itself.
     fn variable(&self, which: Variable) -> N {
         match which {
@@ -72,9 +76,22 @@ impl<N: Number, P> Circumstances<'_, N, P> {
                 let found = all.find(|(seen, _)| seen.signal == signal);
                 found.map_or_else(N::unknown, |(_, values)| values[order as usize])
             }
+            Variable::Input(index) => match &self.sources[index] {
+                Source::Load(place) => self.inputs[*place],
+                Source::Given(size) => size.evaluate(self.parameter, self.time),
+            },
             _ => N::unknown(),
         }
     }
+}
+
+/// Source of an input of the mechanism.
+#[derive(Debug)]
+pub(super) enum Source {
+    /// A load, by its place.
+    Load(usize),
+    /// An expression in t and the parameters.
+    Given(Expression),
 }
 
 impl AppliedForce {
@@ -154,9 +171,16 @@ fn distance_rounding(coordinate: &Coordinate, at: &Configuration) -> f64 {
 }
 
 impl AppliedForces {
-    pub(super) fn new(system: &System, inputs: &[Option<usize>]) -> Self {
-        let forces = system.mechanism().forces.iter().zip(inputs);
-        let list = forces.map(|(force, &input)| AppliedForce {
+    pub(super) fn new(system: &System) -> Self {
+        let mechanism = system.mechanism();
+        let ([of_inputs, of_forces], _) = mechanism.load_places();
+        let inputs = mechanism.inputs.iter().zip(of_inputs);
+        let sources = inputs.map(|(input, place)| match (place, &input.given) {
+            (Some(place), _) => Source::Load(place),
+            (None, given) => Source::Given(given.clone().expect("it is given")),
+        });
+        let forces = mechanism.forces.iter().zip(of_forces);
+        let list = forces.map(|(force, input)| AppliedForce {
             place: match &force.load {
                 Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
                     Place::Coordinate(system.relation_of(&force.load, coordinate))
@@ -166,8 +190,9 @@ impl AppliedForces {
             input,
             has_corners: force.load.moving_expressions().any(Expression::has_corners),
         });
-        let seen = seen(system.mechanism());
+        let seen = seen(mechanism);
         Self {
+            sources: sources.collect(),
             list: list.collect(),
             seen_values: vec![[0.0; 2]; seen.len()],
             seen,
@@ -202,6 +227,7 @@ impl AppliedForces {
             parameter,
             time,
             inputs,
+            sources: &self.sources,
             seen: &self.seen,
             seen_values: &self.seen_values,
         };

@@ -370,6 +370,7 @@ impl Forces {
             parameter: &parameter,
             time: Dual::new(state.pose.time, [sensitivity.time]),
             inputs: &inputs,
+            sources: &self.applied.sources,
             seen: &self.applied.seen,
             seen_values: &seen_values,
         };

@@ -94,7 +94,7 @@ impl Forces {
     pub(in crate::kinematics) fn new(compiled: &CompiledMechanism) -> Self {
         let system = &compiled.system;
         let mechanism = Arc::clone(system.mechanism());
-        let (places, loads) = load_places(&mechanism);
+        let (_, loads) = mechanism.load_places();
         let (unknowns, drivers) = (system.unknowns(), mechanism.drivers.len());
         let rows = ReactionRows::new(system);
         Self {
@@ -103,7 +103,7 @@ impl Forces {
             masses: Masses::new(&mechanism, &|p: ParameterId| {
                 mechanism.parameters[p.index()].default
             }),
-            applied: AppliedForces::new(system, &places),
+            applied: AppliedForces::new(system),
             loads,
             factors: JacobianFactors::new(system, &compiled.structure, &compiled.plan),
             set_aside: compiled.redundant.now.clone(),
@@ -122,8 +122,8 @@ impl Forces {
         }
     }
 
-    /// Returns the number of loads: the sizes of forces that are inputs, in the order of their
-    /// variables, then those of passive forces, in file order.
+    /// Returns the number of loads: [inputs and sizes of forces that are inputs](Mechanism::load_inputs),
+    /// then the sizes of passive forces, in file order.
     #[must_use]
     pub fn loads(&self) -> usize {
         self.loads
@@ -595,22 +595,4 @@ pub(super) fn solve_rates(
         tangent: rates,
     };
     compiled.plan.solve_rates(&mut block_state, driver_rates);
-}
-
-/// Returns the indices, in a list of all loads, of those of each force, and their number.
-fn load_places(mechanism: &Mechanism) -> (Vec<Option<usize>>, usize) {
-    let mut next = 0;
-    let mut places = vec![None; mechanism.forces.len()];
-    for is_passive in [false, true] {
-        for (place, force) in places.iter_mut().zip(&mechanism.forces) {
-            let loads = match &force.load {
-                Load::Passive { .. } if is_passive => 1,
-                load if !is_passive && load.is_input() => load.components(),
-                _ => continue,
-            };
-            *place = Some(next);
-            next += loads;
-        }
-    }
-    (places, next)
 }

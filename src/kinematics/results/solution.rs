@@ -91,10 +91,12 @@ impl Solution {
         }
     }
 
-    /// Seeks forces too, from the next [`solve`](Self::solve) on. Those that are inputs are zero.
+    /// Seeks forces too, from the next [`solve`](Self::solve) on. Those that are inputs have the values of
+    /// their start.
     pub fn seek_forces(&mut self, solver: &Solver) {
         let forces = solver.forces();
         self.loads = vec![0.0; forces.loads()];
+        solver.mechanism().write_load_starts(&mut self.loads);
         self.forces = Some(forces);
         if !solver.mechanism().has_freedoms() {
             self.friction = solver.friction();
@@ -312,7 +314,7 @@ impl Solution {
 
 /// Returns the places of the friction of a mechanism without freedoms.
 fn rubbed(mechanism: &Mechanism) -> Vec<Rubbed> {
-    let loads = mechanism.force_inputs().len()..;
+    let loads = mechanism.load_inputs().len()..;
     let forces = mechanism.forces.iter();
     let frictions = forces.filter_map(|force| match &force.load {
         Load::Passive {

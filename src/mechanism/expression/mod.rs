@@ -60,6 +60,8 @@ pub enum Variable {
     Signal(Signal, Order),
     /// A force, an energy or an inertia, in a measure that is computed.
     Force(ForceQuantity),
+    /// An input of the mechanism, by its index.
+    Input(usize),
     /// A coordinate of a coupling, by its place among these.
     Coordinate(usize),
     /// An argument of a function by its place, or that of a coupling's law, `x` there.
@@ -78,6 +80,7 @@ impl Variable {
             Self::Velocity => "velocity",
             Self::Signal(..) => "a signal",
             Self::Force(_) => "a force",
+            Self::Input(_) => "an input",
             Self::Coordinate(_) => "a coordinate",
             Self::Argument(_) => "x",
         }

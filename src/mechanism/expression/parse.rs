@@ -33,6 +33,8 @@ pub(in crate::mechanism) struct Scope<'a> {
     pub(in crate::mechanism) moving: Option<&'a MovingNames<'a>>,
     /// Functions of the file that it may call.
     pub(in crate::mechanism) functions: Option<&'a FunctionNames<'a>>,
+    /// Inputs of the file, which only some expressions may use.
+    pub(in crate::mechanism) inputs: Option<&'a NameTable<'a, usize>>,
     /// Names of the arguments, within a function.
     pub(in crate::mechanism) arguments: &'a [&'a str],
 }
@@ -48,6 +50,7 @@ impl<'a> Scope<'a> {
             variables,
             moving: None,
             functions: None,
+            inputs: None,
             arguments: &[],
         }
     }

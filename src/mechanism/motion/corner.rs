@@ -86,7 +86,8 @@ mod tests {
 
     /// Asserts that a motion has its corners from −1 to 10 s where they are, to some roundings.
     fn assert_corners(text: &str, expected: &[f64]) {
-        let scope = Scope::new(&NameTable::new(), &[Variable::Time]);
+        let names = NameTable::new();
+        let scope = Scope::new(&names, &[Variable::Time]);
         let expression = Expression::parse(text, scope).expect("an expression");
         let mut motion = MotionInForce::new(&Motion::Expression(expression), 0);
         motion.set_parameters(|_| Jet::constant(0.0));

@@ -29,7 +29,8 @@ fn through(table: Table, interpolation: Interpolation) -> Result<ProfileInForce,
 
 /// The contour of an expression in the polar angle.
 fn contour(text: &str) -> ProfileInForce {
-    let scope = Scope::new(&NameTable::new(), &[Variable::PolarAngle]);
+    let names = NameTable::new();
+    let scope = Scope::new(&names, &[Variable::PolarAngle]);
     let expression = Expression::parse(text, scope).expect("it parses");
     let mut profile = ProfileInForce::new(&Profile::Expression(expression), 0);
     profile.set_parameters(|_| 0.0).expect("it makes a contour");

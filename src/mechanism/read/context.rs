@@ -65,6 +65,12 @@ pub(super) struct Context<'a> {
     pub(super) carriers: Vec<Option<BodyId>>,
     /// Name of the first body, or `ground`, that has a marker of this name.
     pub(super) owners: HashMap<&'a str, &'a str>,
+    /// Inputs by their places.
+    pub(super) inputs: NameTable<'a, usize>,
+    /// Whether anything uses each input.
+    pub(super) inputs_used: Vec<bool>,
+    /// Dimension of each input with a unit.
+    pub(super) input_dimensions: Vec<Option<Dimension>>,
     /// Functions, `None` in a file without.
     pub(super) functions: Option<Rc<FunctionNames<'a>>>,
     /// Whether all functions could be read, or are still to be read.
@@ -101,6 +107,9 @@ impl<'a> Context<'a> {
             markers: Vec::new(),
             carriers: Vec::new(),
             owners: HashMap::new(),
+            inputs: NameTable::new(),
+            inputs_used: Vec::new(),
+            input_dimensions: Vec::new(),
             functions: None,
             has_functions: true,
             functions_used: Vec::new(),

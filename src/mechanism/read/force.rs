@@ -83,19 +83,27 @@ impl<'a> Context<'a> {
                 measure.coordinate.kind,
             )
         });
-        let signals: Vec<_> = of_drivers.chain(of_measures).collect();
+        let inputs = self.inputs.candidates_in_order().into_iter();
+        let inputs = inputs.map(|(name, place)| {
+            let dimension = self.input_dimensions[place];
+            (name.to_owned(), Variable::Input(place), dimension)
+        });
+        let signals = of_drivers.chain(of_measures);
+        let signals = signals.map(|(name, variable, unit)| (name, variable, Some(unit)));
+        let signals: Vec<_> = signals.chain(inputs).collect();
         let computed = self.computed.clone();
         let known = signals
             .iter()
             .map(|(name, variable, _)| (name.as_str(), *variable));
-        let of_signals = signals.iter().map(|(name, _, unit)| (name.as_str(), *unit));
+        let of_signals = signals.iter();
+        let of_signals = of_signals.filter_map(|(name, _, unit)| Some((name.as_str(), (*unit)?)));
         let moving = MovingNames {
             known: known.collect(),
             dimensions: Vec::new(),
             of_signals: of_signals.collect(),
             computed,
-            usable: "a force may use parameters, `t`, and `position` and `velocity` of drivers, \
-                     freedoms and measures with a coordinate",
+            usable: "a force may use parameters, inputs, `t`, and `position` and `velocity` of \
+                     drivers, freedoms and measures with a coordinate",
             law: None,
             may_jump: true,
         };
@@ -160,6 +168,20 @@ impl<'a> Context<'a> {
             Some(value) => Some(self.force_value(value, &OWN, moving, start_time)?),
             None => None,
         };
+        let resisting = [
+            (
+                "stiffness",
+                &keys.stiffness,
+                "a spring that pushes away from where it is free",
+            ),
+            ("damping", &keys.damping, "a damper that speeds up"),
+        ];
+        for (key, field, what) in resisting {
+            if field.number().is_some_and(|number| number < 0.0) {
+                let message = format!("{} has a negative `{key}`: {what}", owner.subject);
+                self.warn(code::UNUSUAL_VALUE, field.span.clone(), message);
+            }
+        }
         let damping = keys.damping.optional()?.map(|damping| damping.expression);
         let stiffness = keys.stiffness.optional()?;
         let free = keys.free.optional()?;

@@ -1,6 +1,7 @@
 //! Friction along coordinates and in joints.
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::wording::shown;
 use crate::mechanism::{
     Bearing, BearingShape, Force, ForceLaw, FrictionLaw, Joint, Load, PassiveCause,
     RegularisedFriction,
@@ -63,6 +64,10 @@ table! {
 /// Friction of any shape.
 pub(super) type AnyFriction = AnyOf<Placed<FrictionKeys<'static>>, JointFrictionKeys<'static>>;
 
+/// Coefficient of friction above those of dry surfaces: soft rubber has 1.5. Halved, a tyre is warned of.
+/// Doubled, percents of a slippery pair, such as 3, pass.
+const MOST_FRICTION: f64 = 2.0;
+
 const PLACING: Placing = Placing {
     noun: "friction",
     verb: "slow",
@@ -118,6 +123,17 @@ impl<'a> Context<'a> {
         joints: Option<&[Joint]>,
     ) -> Option<Force> {
         let keys = self.table::<JointFrictionKeys<'a>>(fields);
+        if let Some(coefficient) = keys.coefficient.number().filter(|c| *c > MOST_FRICTION) {
+            let message = format!(
+                "{} has the coefficient {}: more than any dry surfaces",
+                fields.subject,
+                shown(coefficient)
+            );
+            self.warn(code::UNUSUAL_VALUE, keys.coefficient.span.clone(), message)
+                .suggest(
+                    "steel on steel has 0.1 to 0.6, rubber on a road 1; percents are no unit here",
+                );
+        }
         let coefficient = ("coefficient", keys.coefficient);
         let law = self.law(
             &keys.owner,

@@ -23,6 +23,7 @@ mod force;
 mod freedom;
 mod friction;
 mod function;
+mod input;
 mod joint;
 mod kind;
 mod limits;
@@ -163,6 +164,7 @@ impl<'a> Context<'a> {
             parameters,
             derivation_order,
             functions,
+            inputs: self.each(&root.inputs, Self::input),
             bodies,
             markers,
             joints,
@@ -186,6 +188,7 @@ impl<'a> Context<'a> {
             self.check_freedoms(&mechanism, root.freedoms.items());
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
             self.warn_of_uncalled(root.functions.items());
+            self.warn_of_unused_inputs(root.inputs.items());
         }
         Some(mechanism)
     }

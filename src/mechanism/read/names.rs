@@ -31,6 +31,11 @@ impl<'a> Context<'a> {
         if !root.functions.items().is_empty() {
             self.declare_functions(root.functions.items(), false);
         }
+        let inputs = root.inputs.items().iter().map(Entry::name);
+        self.inputs = inputs.zip(0..).collect();
+        self.inputs_used = vec![false; root.inputs.items().len()];
+        let units = root.inputs.items().iter().map(declared);
+        self.input_dimensions = units.collect();
         let joints = root.joints.items().iter().map(Entry::name);
         let constraints = root.constraints.items().iter().map(Entry::name);
         self.holder_counts = [joints.len(), constraints.len()];
@@ -66,6 +71,7 @@ impl<'a> Context<'a> {
     fn check_shared_names(&mut self, root: &Root<'a>) {
         let sections = [
             ("parameter", &root.parameters),
+            ("input", &root.inputs),
             ("function", &root.functions),
             ("body", &root.bodies),
             ("joint", &root.joints),

@@ -171,6 +171,7 @@ impl<'a> Context<'a> {
             variables,
             moving,
             functions: self.functions.as_deref(),
+            inputs: Some(&self.inputs),
             arguments: &self.arguments,
         };
         match parse(text, scope, &self.parameter_dimensions) {
@@ -181,6 +182,11 @@ impl<'a> Context<'a> {
                 }
                 for id in parsed.expression.parameters() {
                     self.parameters_used[id.index()] = true;
+                }
+                for variable in parsed.expression.variables() {
+                    if let Variable::Input(place) = variable {
+                        self.inputs_used[place] = true;
+                    }
                 }
                 for place in parsed.expression.calls() {
                     self.functions_used[place] = true;

@@ -225,8 +225,8 @@ fn describe(dimension: Dimension) -> String {
     if let Some(unit) = Unit::ALL.iter().find(|unit| unit.dimension == dimension) {
         return format!("a quantity in {}", unit.name);
     }
-    let Dimension { kg, m, s, rad } = dimension;
-    let powers = [("kg", kg), ("m", m), ("s", s), ("rad", rad)];
+    let Dimension { kg, m, s, rad, a } = dimension;
+    let powers = [("kg", kg), ("m", m), ("s", s), ("rad", rad), ("A", a)];
     let powers = powers.iter().filter(|(_, power)| *power != 0);
     let powers = powers.map(|(name, power)| match power {
         1 => (*name).to_owned(),

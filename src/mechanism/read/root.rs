@@ -17,6 +17,7 @@ use super::force::AnyForce;
 use super::freedom::FreedomKeys;
 use super::friction::AnyFriction;
 use super::function::AnyFunction;
+use super::input::InputKeys;
 use super::joint::AnyJoint;
 use super::kind::Described;
 use super::kind::{Entry, Fields, Item, Kind, Named, Section, Text, schema};
@@ -46,6 +47,8 @@ table! {
         copyright: String = Text,
         /// Numbers that can be changed in the FMU without a new export.
         parameters: Vec<Entry<'a>> = Named(PhantomData::<AnyParameter>),
+        /// Numbers from outside: FMI inputs.
+        inputs: Vec<Entry<'a>> = Named(PhantomData::<InputKeys<'static>>),
         /// Functions that expressions call by name.
         functions: Vec<Entry<'a>> = Named(PhantomData::<AnyFunction>),
         /// The body that never moves.

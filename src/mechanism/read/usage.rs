@@ -43,6 +43,15 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// Warns of inputs that nothing uses.
+    pub(super) fn warn_of_unused_inputs(&mut self, inputs: &[Entry<'a>]) {
+        let used = std::mem::take(&mut self.inputs_used);
+        for (entry, _) in inputs.iter().zip(used).filter(|(_, used)| !used) {
+            let message = format!("nothing uses the input {}", quoted(entry.name()));
+            self.warn(code::UNUSED_INPUT, entry.key.span(), message);
+        }
+    }
+
     /// Warns of functions that nothing calls.
     pub(super) fn warn_of_uncalled(&mut self, functions: &[Entry<'a>]) {
         let used = std::mem::take(&mut self.functions_used);

@@ -422,3 +422,73 @@ fn changes_of_the_motion_agree_with_differences() {
         assert!((difference - exact).abs() < 1e-7, "{exact} {difference}");
     }
 }
+
+/// A motor by its voltage, which a host gives, with a controller of the arm's angle: the force sees two
+/// inputs. Their values begin at those of the file.
+#[test]
+fn a_servo_follows_its_set_point() {
+    let text = r#"
+format = 1
+name = "servo"
+[inputs]
+supply = { unit = "V", start = 12, min = 0, max = 24 }
+goal = { unit = "rad", start = "-90*deg" }
+[parameters]
+k = { value = 0.6, unit = "N.m/A" }
+resistance = { value = 1.5, unit = "ohm" }
+[ground.markers]
+O = [0, 0]
+[bodies.arm]
+mass = 0.5
+inertia = 0.02
+center = [0.1, 0]
+markers = { O = [0, 0] }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+[freedoms]
+turn = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = "-90*deg" }
+[forces]
+motor = { coordinate = "angle", markers = ["ground.O", "arm.O"], value = "k*(supply*tanh(2*(goal - turn.position)) - k*velocity)/resistance" }
+"#;
+    let mechanism = parse(text);
+    let names: Vec<_> = mechanism
+        .load_inputs()
+        .into_iter()
+        .map(|i| (i.name, i.start))
+        .collect();
+    let start = -std::f64::consts::FRAC_PI_2;
+    assert_eq!(
+        names,
+        [("supply".to_owned(), 12.0), ("goal".to_owned(), start)]
+    );
+    let goal = |t: f64| start + t * (2.0 - t);
+    let exact = integrated(
+        [start, 0.0],
+        |t, &[phi, w]| {
+            let torque = 0.6 * (12.0 * (2.0 * (goal(t) - phi)).tanh() - 0.6 * w) / 1.5;
+            [w, (torque - 0.5 * 9.81 * 0.1 * phi.cos()) / 0.025]
+        },
+        1.0,
+        40_000,
+    );
+    // The supply stays as it is in the file.
+    let fed = Fed {
+        loads: |t, loads| loads[1] = -std::f64::consts::FRAC_PI_2 + t * (2.0 - t),
+        ..Fed::default()
+    };
+    let mut run = Run::new(&mechanism, TOLERANCE, fed);
+    run.to(1.0);
+    let off = error(&run.state(), &exact);
+    assert!(off < MARK, "{off}: {:?} {exact:?}", run.state());
+    // By inputs against differences: the torque is linear in the supply.
+    run.solution.seek_forces(&run.solver);
+    run.solution.loads.copy_from_slice(&[12.0, goal(1.0)]);
+    let space = run.free.linearize(&mut run.solver, &mut run.solution, &[]);
+    let space = space.expect("the pose is regular");
+    assert_eq!(space.inputs, ["supply", "goal"]);
+    let [phi, _] = exact;
+    let lean = (2.0 * (goal(1.0) - phi)).tanh();
+    assert!((space.b[(1, 0)] - 0.6 * lean / 1.5 / 0.025).abs() < 1e-6);
+    let slope = 0.6 * 12.0 * 2.0 * (1.0 - lean * lean) / 1.5 / 0.025;
+    assert!((space.b[(1, 1)] - slope).abs() < 1e-5, "{slope}");
+}

@@ -1,6 +1,6 @@
 //! The play with which a mechanism moves whose constraints contradict each other.
 
-use biela::kinematics::{Path, Play, Solver};
+use biela::kinematics::{NeededPlay, Path, Solver};
 
 use crate::common::parse;
 use crate::redundancy::mechanisms::{parallelogram, with_joints};
@@ -11,12 +11,12 @@ const STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const CLOSE: f64 = 1e-9;
 
 /// Returns the play for a mechanism that does not assemble.
-fn play_of(text: &str) -> Option<Play> {
+fn play_of(text: &str) -> Option<NeededPlay> {
     let mechanism = parse(text);
     let assembled = Solver::assembled(mechanism.clone(), &Path::new(&mechanism));
     assembled
         .err()
-        .and_then(|error| Play::find(&mechanism, &error))
+        .and_then(|error| NeededPlay::find(&mechanism, &error))
 }
 
 /// Cranks of 0.1 m of which the third has its pivot off by δ along the base: its pin is

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::ranges::{DriverRange, driver_speeds};
 use super::session::Session;
 use super::values::{is_told, shown_in};
-use biela::mechanism::{DriverId, Mechanism, Parameter, Unit};
+use biela::mechanism::{DriverId, LoadTarget, Mechanism, Parameter, Unit};
 
 impl Session {
     /// Returns what a page shows once: names, units, limits.
@@ -82,14 +82,22 @@ impl Session {
         }
         let largest = largest_load(mechanism, &pose.parameters);
         let loads: Vec<Value> = (mechanism
-            .force_inputs()
+            .load_inputs()
             .iter()
             .zip(&self.motion.solution.loads))
         .map(|(input, load)| {
+            // The slider of an input reaches as far as its limits, or some starts.
+            let limits = input.limits.iter().flatten();
+            let reach = limits.fold(input.start.abs(), |most, limit| most.max(limit.abs()));
+            let largest = match input.target {
+                LoadTarget::Force(..) => largest,
+                LoadTarget::Input(_) if reach > 0.0 => reach,
+                LoadTarget::Input(_) => 1.0,
+            };
             json!({
                 "name": input.name,
                 "description": input.description,
-                "unit": input.unit.name,
+                "unit": input.unit.map_or("", |unit| unit.name),
                 "factor": 1.0,
                 "value": load,
                 "largest": largest,

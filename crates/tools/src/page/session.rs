@@ -467,6 +467,8 @@ impl Session {
         self.go_to_state(Some(self.home.clone()));
         self.motion.solution.driver_rates = start_rates(&self.mechanism, &self.ranges);
         self.motion.solution.loads.fill(0.0);
+        let mechanism = self.motion.solver.mechanism().clone();
+        mechanism.write_load_starts(&mut self.motion.solution.loads);
         self.release_moved(false);
     }
 

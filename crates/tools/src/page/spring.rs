@@ -65,7 +65,7 @@ impl Spring {
             grip,
             hand,
             stiffness,
-            first_load: mechanism.force_inputs().len(),
+            first_load: mechanism.load_inputs().len(),
             other,
         })
     }

@@ -108,6 +108,17 @@ impl Parser<'_> {
                 [] => error,
             };
         }
+        if self
+            .scope
+            .inputs
+            .is_some_and(|inputs| inputs.get(name).is_some())
+        {
+            let error = ExpressionError::new(span, format!("{} is an input", quoted(name)));
+            return error.help(match self.scope.arguments {
+                [] => "only the `value` of a force may use inputs",
+                _ => SEEN_BY_FUNCTIONS,
+            });
+        }
         let is_computed = |name| {
             let moving = self.scope.moving;
             moving.is_some_and(|moving| moving.computed.contains(&name))

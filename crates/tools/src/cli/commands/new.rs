@@ -110,6 +110,7 @@ static TEMPLATES: &[Template] = &[
     template!("scissor_lift_screw"),
     template!("scotch_yoke"),
     template!("screw_jack"),
+    template!("servo_arm"),
     template!("sewing_machine"),
     template!("slider_crank"),
     template!("slider_crank_motor"),
@@ -125,6 +126,7 @@ static TEMPLATES: &[Template] = &[
     template!("wedge_press"),
     template!("whitworth"),
     template!("wiper"),
+    template!("wiper_motor"),
 ];
 
 impl New {

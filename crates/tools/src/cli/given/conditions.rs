@@ -61,7 +61,7 @@ impl Conditions {
         let mut driven_by_option = Vec::new();
         let mut forces_by_option = Vec::new();
         let drivers = mechanism.drivers.len();
-        let force_inputs = mechanism.force_inputs();
+        let force_inputs = mechanism.load_inputs();
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
         let names = names.chain(force_inputs.iter().map(|input| input.name.as_str()));
         let others: Vec<&str> = mechanism
@@ -74,9 +74,7 @@ impl Conditions {
             if let Some(input) = index.checked_sub(drivers).map(|k| &force_inputs[k]) {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
-                driven.forces[input.force]
-                    .load
-                    .set_component(input.component, size);
+                driven.give_load(input.target, size);
                 forces_by_option.push(input.name.as_str());
                 continue;
             }

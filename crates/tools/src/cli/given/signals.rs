@@ -183,7 +183,7 @@ impl Given for Part<'_> {
 impl Target {
     /// Returns the input of this name.
     fn named(name: &str, mechanism: &Mechanism) -> Option<Self> {
-        let mut inputs = mechanism.force_inputs().into_iter();
+        let mut inputs = mechanism.load_inputs().into_iter();
         if let Some(input) = inputs.position(|input| input.name == name) {
             return Some(Self::Force(input));
         }

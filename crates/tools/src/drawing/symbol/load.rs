@@ -41,10 +41,14 @@ pub(super) fn compose_at(
     let Simulation { start, stop, .. } = composer.mechanism.simulation;
     // One that rises from zero has its direction later.
     let sizes = [start, 0.5 * (start + stop), stop].map(|time| {
-        let value = |size: &Expression| size.evaluate(&|p| composer.parameter(p), time);
+        // What moves has grown.
+        let variable = |which| if which == Variable::Time { time } else { 1.0 };
+        let value =
+            |size: &Expression| size.evaluate_at(&|p| composer.parameter(p), &variable);
         law.each_ref().map(value)
     });
-    let is_seen = |sizes: &&[f64; 3]| sizes.iter().any(|size| *size != 0.0);
+    let is_seen =
+        |sizes: &&[f64; 3]| sizes.iter().any(|size| *size != 0.0) && sizes.iter().all(|size| size.is_finite());
     let [x, y, torque] = sizes.iter().find(is_seen).copied().unwrap_or_default();
     let size = x.hypot(y);
     let arrows = if size > 0.0 {
@@ -74,9 +78,11 @@ pub(super) fn compose_along(
     };
     let start = composer.mechanism.simulation.start;
     let sign = law.map_or(1.0, |law| {
-        // What moves elsewhere counts as zero here.
-        let other = |which| if which == Variable::Time { start } else { 0.0 };
-        let size = |c| law.evaluate(&|p| composer.parameter(p), &other, c);
+        let size = |[position, velocity]: [f64; 2]| {
+            // What moves elsewhere rests at zero like the coordinate, or grows like it.
+            let other = |which| if which == Variable::Time { start } else { velocity };
+            law.evaluate(&|p| composer.parameter(p), &other, [position, velocity])
+        };
         // One that is zero here has its direction elsewhere, or in motion.
         let poses = || std::iter::once(composer.q).chain(composer.poses());
         let sizes = [0.0, 1.0]

@@ -264,7 +264,7 @@ impl<'a> Column<'a> {
     fn new(place: usize, name: &'a str, target: Target, mechanism: &Mechanism) -> Self {
         let unit = match target {
             Target::Driver(id, order) => Output::of_driver(mechanism, id)[order as usize].unit,
-            Target::Force(input) => mechanism.force_inputs()[input].unit,
+            Target::Force(input) => mechanism.load_inputs()[input].unit.unwrap_or(Unit::ONE),
         };
         Self {
             place,
@@ -381,7 +381,7 @@ impl Unknown {
             };
         }
         let drivers = || mechanism.drivers.iter().map(|driver| driver.name.as_str());
-        let inputs = mechanism.force_inputs();
+        let inputs = mechanism.load_inputs();
         let variables = |order: Order| drivers().map(move |d| format!("{d}.{}", order.suffix()));
         let is_left = |name: &&str| {
             let target = Target::named(name, mechanism);

@@ -1,0 +1,229 @@
+//! Inputs of the file, and forces with corners, as hosts see them.
+
+use std::sync::Arc;
+
+use biela::fmi::{Call, Causality, Interface, MechanismModel, StepProgress, Version};
+use biela::mechanism::Mechanism;
+
+use crate::clauses::{get, set, started, vr};
+use crate::common::log::Heard;
+use crate::common::{Instance, instance_of, parse, shipped};
+
+/// A block of 2 kg, pushed by a force of 3 N per unit of an input and held back by a damper.
+fn block() -> Arc<Mechanism> {
+    parse(
+        r#"
+format = 1
+name = "block"
+[inputs]
+push = { start = 1, max = 4, unit = "N" }
+[ground.markers]
+O = [0, 0]
+[bodies.block]
+markers = { B = [0, 0] }
+mass = 2
+[joints]
+guide = { type = "translational", markers = ["ground.O", "block.B"] }
+[freedoms]
+x = { coordinate = "x", markers = ["ground.O", "block.B"] }
+[forces]
+motor = { coordinate = "x", markers = ["ground.O", "block.B"], value = "3*push - 0.5*x.velocity" }
+idle = { coordinate = "x", markers = ["ground.O", "block.B"] }
+"#,
+    )
+}
+
+fn begun(version: Version) -> Instance {
+    if version == Version::Fmi2 {
+        return started(instance_of(block(), Interface::CoSimulation));
+    }
+    let model = MechanismModel::new(block(), Interface::CoSimulation).expect("it assembles");
+    let sink = Box::new(Heard::default());
+    let mut instance = Instance::of_version(version, model, sink, false);
+    instance
+        .enter_initialization_mode_at(0.0, None)
+        .expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
+    instance
+}
+
+/// The input holds during a step, and acts from its step on: 2 v′ = 3 u − v/2 in closed form.
+#[test]
+fn an_input_acts_during_its_steps() {
+    for version in [Version::Fmi2, Version::Fmi3] {
+        let mut instance = begun(version);
+        let (mut x, mut v) = (0.0_f64, 0.0_f64);
+        let rate: f64 = 0.25;
+        for (step, push) in (0..).zip([None, Some(3.0), Some(-1.0), Some(0.0)]) {
+            if let Some(push) = push {
+                set(&mut instance, [("push", push)]);
+            }
+            let push = push.unwrap_or(1.0);
+            let [found] = get(&mut instance, ["push"]);
+            assert_eq!(found.to_bits(), push.to_bits());
+            if version == Version::Fmi2 {
+                let [acceleration] = get(&mut instance, ["x.acceleration"]);
+                assert!((acceleration - (1.5 * push - rate * v)).abs() < 1e-8);
+            }
+            let (t, h) = (0.5 * f64::from(step), 0.5);
+            match version {
+                Version::Fmi2 => instance.do_step(t, h).expect("it moves"),
+                _ => {
+                    let progress = instance.begin_step(t, h).expect("it moves");
+                    assert!(matches!(progress, StepProgress::Done(_)), "{progress:?}");
+                }
+            }
+            let (last, decay) = (1.5 * push / rate, (-rate * h).exp());
+            x += last * h + (v - last) * (1.0 - decay) / rate;
+            v = last + (v - last) * decay;
+            let found = get(&mut instance, ["x.position", "x.velocity"]);
+            assert!(
+                (found[0] - x).abs() < 1e-8 && (found[1] - v).abs() < 1e-8,
+                "{found:?}"
+            );
+        }
+    }
+}
+
+/// Its value reference stands behind those of all other variables, which keep theirs.
+#[test]
+fn value_references_of_inputs_stand_at_the_end() {
+    let text_of = |with: bool| {
+        let mut mechanism = (*block()).clone();
+        if !with {
+            mechanism.inputs.clear();
+            for force in &mut mechanism.forces {
+                let zero = biela::mechanism::Expression::constant(0.0);
+                force.load.set_component(0, zero);
+            }
+            mechanism.forces.pop();
+        }
+        Arc::new(mechanism)
+    };
+    let names = |mechanism| {
+        let instance = instance_of(mechanism, Interface::CoSimulation);
+        let names = instance
+            .variables()
+            .iter()
+            .map(|variable| variable.name.clone());
+        names.collect::<Vec<_>>()
+    };
+    let all = names(text_of(true));
+    assert_eq!(all.last().map(String::as_str), Some("push"));
+    let before: Vec<_> = all
+        .iter()
+        .filter(|name| !name.starts_with("idle"))
+        .collect();
+    let without = names(text_of(false));
+    assert!(
+        without
+            .iter()
+            .eq(before[..before.len() - 1].iter().copied())
+    );
+}
+
+#[test]
+fn accelerations_depend_on_inputs() {
+    let mut instance = begun(Version::Fmi3);
+    let place = vr(&instance, "push");
+    let variable = &instance.variables()[place as usize - 1];
+    assert_eq!(variable.causality, Causality::Input);
+    for name in ["x.acceleration", "motor.effort"] {
+        let of = vr(&instance, name);
+        let known = instance
+            .dependencies(Call::GetVariableDependencies, of)
+            .expect("legal");
+        assert!(
+            known.iter().any(|(vr, _)| *vr == place),
+            "{name}: {known:?}"
+        );
+    }
+    let of = [vr(&instance, "x.acceleration")];
+    let found = instance
+        .directional_derivative(&of, &[place], &[1.0])
+        .expect("it exists");
+    assert!((found[0] - 1.5).abs() < 1e-12);
+}
+
+/// A value beyond a limit acts, and is told once.
+#[test]
+fn a_value_beyond_its_limit_is_told() {
+    let heard = Heard::default();
+    let mut instance = started(heard.instance(block(), Interface::CoSimulation, true));
+    for step in 0..3 {
+        set(&mut instance, [("push", 5.0)]);
+        instance
+            .do_step(0.1 * f64::from(step), 0.1)
+            .expect("it moves");
+    }
+    let told = heard.take(biela::fmi::Category::Warning);
+    let told: Vec<_> = told
+        .iter()
+        .filter(|text| text.contains("input `push`"))
+        .collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(
+        told[0].contains("is at 5 N, beyond its `max` = 4 N"),
+        "{told:?}"
+    );
+}
+
+/// A saved state goes on with the same bits, also beside a corner of a force and behind the bounce at a stop.
+#[test]
+fn a_servo_goes_on_from_a_saved_state() {
+    let begun = || started(instance_of(shipped("servo_arm"), Interface::CoSimulation));
+    let go_on = |instance: &mut Instance, from: u32, to: u32| {
+        let steps = (from..to).map(|step| {
+            instance
+                .do_step(0.01 * f64::from(step), 0.01)
+                .expect("it moves");
+            get(
+                instance,
+                ["angle.position", "angle.velocity", "angle.acceleration"],
+            )
+            .map(f64::to_bits)
+        });
+        steps.collect::<Vec<_>>()
+    };
+    // The voltage leaves its limit in the twelfth step, the arm meets its stop in the sixteenth.
+    for saved in [5, 11, 12, 15, 16] {
+        let mut straight = begun();
+        go_on(&mut straight, 0, saved);
+        let state = straight.fmu_state().expect("legal");
+        let bytes = straight.serialize_fmu_state(&state).expect("its own");
+        let expected = go_on(&mut straight, saved, 20);
+        let mut other = begun();
+        go_on(&mut other, 0, 3);
+        let read = other.deserialize_fmu_state(&bytes).expect("untouched");
+        other.set_fmu_state(&read).expect("the same mechanism");
+        assert_eq!(go_on(&mut other, saved, 20), expected, "{saved}");
+    }
+}
+
+/// In model exchange the instant at which a force bends is a zero of an event indicator.
+#[test]
+fn an_event_indicator_tells_a_corner() {
+    let mut instance = started(instance_of(shipped("servo_arm"), Interface::ModelExchange));
+    // Two of the stop, two of the voltage's table.
+    let mut at = |angle: f64, velocity: f64| {
+        instance
+            .set_continuous_states(&[angle, velocity])
+            .expect("legal");
+        let indicators = instance.event_indicators(4).expect("they exist");
+        indicators.collect::<Vec<f64>>()
+    };
+    // 90 V/rad (60° − φ) − 0.3 V s/rad ω against 24 V.
+    let goal = 60_f64.to_radians();
+    let beyond = at(0.2, 0.0);
+    let inside = at(goal - 0.1, 0.0);
+    let signs = |values: &[f64]| values[2..].iter().map(|v| *v > 0.0).collect::<Vec<_>>();
+    assert_eq!(signs(&beyond), [true, true], "{beyond:?}");
+    assert_ne!(signs(&inside), signs(&beyond), "{inside:?}");
+    let asked = 90.0 * 0.1;
+    assert!(
+        inside[2..]
+            .iter()
+            .any(|value| (value - (asked - 24.0)).abs() < 1e-9),
+        "{inside:?}"
+    );
+}
