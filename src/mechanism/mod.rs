@@ -10,8 +10,7 @@
 //! | `joint` | [`Joint`]: its kinds, and what it is asked whatever its kind |
 //! | `curve` | [`Curve`]: along which a point moves |
 //! | `rope` | [`Rope`]: points and pulleys that a rope runs over |
-//! | `function` | [`Function`]: a function of the file, which expressions call |
-//! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
+//! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle, and their files |
 //! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
 //! | `coupling` | [`CoordinateEquation`]: an equation between coordinates |
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
@@ -40,7 +39,6 @@ mod expression;
 mod force;
 mod force_quantity;
 mod friction;
-mod function;
 mod id;
 mod input;
 mod joint;
@@ -73,8 +71,11 @@ pub use curve::{Curve, CurveShape, PointPath};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use excursion::{Excursion, Excursive};
+pub(crate) use expression::MOST_MOVING_POINTS;
 pub use expression::{
-    Expression, ExpressionError, LinearForm, Variable, constant, is_taken, names_in,
+    CalledPoints, Corner, Expression, ExpressionError, Function, FunctionBody, Functions, Grid,
+    Interpolation, LinearForm, MOST_ARGUMENTS, PointFunction, Table, Variable, constant, is_taken,
+    names_in,
 };
 pub(crate) use expression::{Values, joins};
 pub use force::{
@@ -82,11 +83,6 @@ pub use force::{
 };
 pub use force_quantity::ForceQuantity;
 pub use friction::{Bearing, BearingShape, FrictionLaw};
-pub(crate) use function::MOST_MOVING_POINTS;
-pub use function::{
-    CalledPoints, Corner, Function, FunctionBody, Functions, Grid, Interpolation, MOST_ARGUMENTS,
-    PointFunction,
-};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use input::{Input, LoadInput, LoadTarget};
 pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};
@@ -108,7 +104,7 @@ pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 pub use stop::{Stop, StopContact};
 pub use synonym::in_our_words;
-pub use table::{Separated, Table, TableFile, comma_hint};
+pub use table::{Separated, TableFile, comma_hint};
 pub use unit_slip::{
     is_plain, large_angle, large_angles, large_length, large_velocity, whole_angles,
 };

@@ -202,7 +202,7 @@ const TURNING: &str = "andrews.beta andrews_free.beta bonnet_hinge.opening cam_f
     slider_crank.crank_angle slider_crank_motor.crank_angle slotted_lever.crank_angle \
     stephenson_six_bar.crank_angle swinging_tip.swing tlv_crank.arm_angle \
     toggle_press.crank_angle v_twin.crank_angle valve_train.cam_angle watt_six_bar.crank_angle \
-    whitworth.crank_angle wiper.motor_angle";
+    whitworth.crank_angle wiper.motor_angle wiper_motor.motor_angle";
 
 #[test]
 fn shipped_mechanisms_start_many_turns_away() {

@@ -15,7 +15,7 @@ use crate::mechanism::{
 #[derive(Debug)]
 pub(super) struct AppliedForces {
     pub(super) list: Vec<AppliedForce>,
-    /// What the sizes depend on that moves elsewhere.
+    /// Coordinates elsewhere on which the sizes depend.
     pub(super) seen: Vec<Seen>,
     /// Sources of the mechanism's inputs.
     pub(super) sources: Vec<Source>,
@@ -61,7 +61,7 @@ pub(super) struct Circumstances<'a, N, P> {
     pub(super) inputs: &'a [N],
     /// Sources of the mechanism's inputs.
     pub(super) sources: &'a [Source],
-    /// What moves elsewhere, with value and rate.
+    /// Coordinates elsewhere, with value and rate.
     pub(super) seen: &'a [Seen],
     pub(super) seen_values: &'a [[N; 2]],
 }

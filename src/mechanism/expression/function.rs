@@ -36,6 +36,9 @@ pub(super) enum Binary {
     Max,
 }
 
+/// Name by which an equation calls the law of its coupling.
+pub(super) const LAW: &str = "law";
+
 /// All functions with their names.
 pub(super) const FUNCTIONS: [(&str, Operation); 22] = [
     ("sin", Operation::Unary(Unary::Sin)),

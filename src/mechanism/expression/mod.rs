@@ -7,39 +7,50 @@
 //! force, signals such as `crank.omega` in a measure, coordinates and the function `law` in a
 //! coupling, whose law is a function of `x`. Powers bind tighter than a sign and associate to the
 //! right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
+//!
+//! Functions of the file (`called`) are expressions, or points (`points`, `grid`) whose numbers are
+//! expressions, and expressions call them: one recursion, in one module.
 
+mod called;
 mod dimension;
 mod error;
 mod function;
+mod grid;
 mod in_force;
 mod infix;
 mod linear;
 mod parse;
 mod pieces;
+mod points;
 mod polar;
 mod reserved;
 mod seams;
+mod table;
 mod token;
 
 #[cfg(test)]
 mod tests;
 
+pub use called::{Corner, Function, FunctionBody, Functions, MOST_ARGUMENTS};
 pub use error::ExpressionError;
 use function::Binary;
 pub(super) use function::CONSTANTS;
 pub use function::constant;
+pub use grid::Grid;
 pub(super) use in_force::ExpressionInForce;
 pub use linear::LinearForm;
 pub(super) use parse::{FunctionNames, LawOfCoupling, MovingNames, Parsed, Scope, Signature};
 pub(super) use pieces::MOST_SWITCHES;
+pub(crate) use points::MOST_MOVING_POINTS;
+pub use points::{CalledPoints, Interpolation, PointFunction};
 pub use reserved::is_taken;
 pub(super) use reserved::taken;
 pub(crate) use seams::joins;
 pub(super) use seams::seams;
+pub use table::Table;
 pub use token::names_in;
 
 use super::force_quantity::ForceQuantity;
-use super::function::{Corner, Function, Functions};
 use super::number::{self, Interval, Jet3, Number, Unary};
 use super::{Order, ParameterId, Signal};
 

@@ -5,19 +5,16 @@ mod fault;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
+use super::called::Functions;
 use super::dimension::{Clash, Dimensions};
 use super::error::ExpressionError;
-use super::function::{Binary, constant, function};
+use super::function::{Binary, LAW, constant, function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
-use crate::mechanism::function::Functions;
 use crate::mechanism::names::NameTable;
 use crate::mechanism::number::Unary;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Dimension, ParameterId, Span};
-
-/// Name by which an equation calls the law of its coupling.
-const LAW: &str = "law";
 
 /// Largest depth of the parser's recursion: nested parentheses, signs, powers and operators.
 const MAX_DEPTH: usize = 128;

@@ -4,10 +4,10 @@
 //! range in turn; where more than a few switch, the hull of both pieces stands for those of the rest. The hull of all choices bounds value and derivatives on both sides of the
 //! switch; whether the pieces join smoothly is not examined here.
 
+use super::called::Function;
 use super::function::Binary;
 use super::{Expression, MAX_STACK, Operation, Values, Variable};
 use crate::mechanism::ParameterId;
-use crate::mechanism::function::Function;
 use crate::mechanism::number::{Interval, Jet3, Number, Taylor, Unary};
 
 /// Most switches of an expression in one range whose pieces are taken in turn, as each doubles the

@@ -1,6 +1,7 @@
 //! Tokens of the language: numbers, names and symbols, each with its place.
 
 use super::error::ExpressionError;
+use super::function::{LAW, function};
 use crate::mechanism::Span;
 use crate::mechanism::wording::quoted;
 
@@ -68,8 +69,8 @@ pub(super) fn scan(text: &str, from: usize) -> Result<Token<'_>, ExpressionError
     Ok(Token { kind, start, end })
 }
 
-/// Returns the places of the names in an expression, but for those of functions; up to a fault of
-/// the text.
+/// Returns the places of the names in an expression, but for those of functions that are no functions
+/// of the file; up to a fault of the text.
 pub fn names_in(text: &str) -> Vec<Span> {
     let mut names: Vec<Span> = Vec::new();
     let mut at = 0;
@@ -77,8 +78,12 @@ pub fn names_in(text: &str) -> Vec<Span> {
         match token.kind {
             TokenKind::End => break,
             TokenKind::Name(_) => names.push(token.span()),
-            TokenKind::Symbol(b'(') if names.last().is_some_and(|name| name.end == at) => {
-                names.pop();
+            TokenKind::Symbol(b'(') => {
+                let called = names.pop_if(|name| name.end == at);
+                names.extend(called.filter(|name| {
+                    let name = &text[name.clone()];
+                    name != LAW && function(name).is_none()
+                }));
             }
             _ => {}
         }

@@ -70,6 +70,7 @@ fn base(name: &str) -> Mechanism {
     mechanism
         .forces
         .retain(|force| force.name.starts_with("load_"));
+    mechanism.inputs.clear();
     let mut solver = Solver::new(Arc::new(mechanism.clone())).expect("the drivers match");
     solver
         .assemble(&Path::new(&mechanism))

@@ -1,7 +1,8 @@
 //! Functions through points: of a motion, of a coupling's law, or called by name.
 
+use super::table::Table;
 use crate::mechanism::spline::{Fixed, Knots, Points, Segment};
-use crate::mechanism::{Ends, Interval, Law, Number, ParameterId, Spline, Table};
+use crate::mechanism::{Ends, Interval, Law, Number, ParameterId, Spline};
 
 /// A function of one argument through given points.
 #[derive(Clone, Debug)]
@@ -327,7 +328,7 @@ impl CalledPoints {
         let (start, end) = (abscissa(0), abscissa(last));
         let (first, end_point) = match (inside > 1, at_ends > 1) {
             // Only the ends.
-            (true, _) => return super::nearest([start, end].into_iter(), x),
+            (true, _) => return nearest([start, end].into_iter(), x),
             (false, true) => (1, last),
             (false, false) => (0, last + 1),
         };
@@ -335,7 +336,7 @@ impl CalledPoints {
             Ends::Periodic => ((x - start) / (end - start)).floor() * (end - start),
             _ => 0.0,
         };
-        super::nearest((first..end_point).map(|point| abscissa(point) + lap), x)
+        nearest((first..end_point).map(|point| abscissa(point) + lap), x)
     }
 }
 
@@ -373,4 +374,13 @@ impl<N: Number> Knots<N> for MovingPoints<N> {
         let inner = &self.knots[1..self.count - 1];
         inner.partition_point(|knot| knot.real() <= x)
     }
+}
+
+/// Returns the largest number up to `x` and the smallest above it.
+pub(super) fn nearest(numbers: impl Iterator<Item = f64>, x: f64) -> [f64; 2] {
+    let around = [f64::NEG_INFINITY, f64::INFINITY];
+    numbers.fold(around, |[below, above], number| match number <= x {
+        true => [below.max(number), above],
+        false => [below, above.min(number)],
+    })
 }

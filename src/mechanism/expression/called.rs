@@ -1,24 +1,14 @@
 //! Functions of the file, which expressions call by their names.
 //!
-//! | file | subject |
-//! |---|---|
-//! | `points` | [`PointFunction`]: points, the course between them and outside |
-//! | `grid` | [`Grid`]: a value for each pair of arguments |
-//!
 //! A function sees its arguments, parameters and other functions. Expressions call it by its place among
 //! the functions of the mechanism, which each of them holds.
 
-mod grid;
-mod points;
-
 use std::sync::Arc;
 
-pub use grid::Grid;
-pub(crate) use points::MOST_MOVING_POINTS;
-pub use points::{CalledPoints, Interpolation, PointFunction};
-
-use super::expression::{Values, Variable};
-use super::{Expression, Number, ParameterId};
+use super::grid::Grid;
+use super::points::CalledPoints;
+use super::{Expression, Values, Variable};
+use crate::mechanism::{Number, ParameterId};
 
 /// Most arguments of a function.
 pub const MOST_ARGUMENTS: usize = 8;
@@ -181,13 +171,4 @@ impl<N: Number> Values<N> for Inside<'_, N> {
     fn law(&self, _argument: N) -> N {
         N::unknown()
     }
-}
-
-/// Returns the largest number up to `x` and the smallest above it.
-fn nearest(numbers: impl Iterator<Item = f64>, x: f64) -> [f64; 2] {
-    let around = [f64::NEG_INFINITY, f64::INFINITY];
-    numbers.fold(around, |[below, above], number| match number <= x {
-        true => [below.max(number), above],
-        false => [below, above.min(number)],
-    })
 }

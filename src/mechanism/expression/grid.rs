@@ -1,5 +1,6 @@
 //! Functions of two arguments through the points of a grid.
 
+use super::points::nearest;
 use crate::mechanism::{Ends, Expression, Interval, Number, ParameterId};
 
 /// A function of two arguments: a value for each pair of abscissas.
@@ -206,13 +207,13 @@ impl Grid {
             (false, Ends::Linear) => &abscissas[1..last],
             (false, _) => &abscissas[..],
             (true, _) => {
-                return super::nearest(
+                return nearest(
                     [abscissas[0] * factor, abscissas[last] * factor].into_iter(),
                     x,
                 );
             }
         };
-        super::nearest(corners.iter().map(|abscissa| abscissa * factor), x)
+        nearest(corners.iter().map(|abscissa| abscissa * factor), x)
     }
 }
 
