@@ -49,246 +49,122 @@ fn a_mechanism_without_driver_exits_with_1_and_says_what_is_loose() {
     assert!(stderr(&assert).contains("free to move: body `crank`"));
 }
 
-/// Asserts that each command ends as one of bad usage, with this part of its message.
-fn exit_with_2(cases: &[(&[&str], &str)]) {
-    for (arguments, expected) in cases {
-        let assert = biela(arguments).code(2);
-        let message = stderr(&assert);
-        assert!(message.contains(expected), "{arguments:?}: {message}");
+/// Command lines, each with its status and a part of its message, in which `\n` ends a line.
+const RUNS: &str = r"
+# Commands and times.
+check
+    2 required
+check no_such_file.toml
+    2 cannot read `no_such_file.toml`
+fly
+    2 unrecognized subcommand
+run mechanisms/tlv.toml --step 0
+    2 expected a positive time
+run mechanisms/tlv.toml --stop -1
+    2 must not be before the start
+run mechanisms/tlv.toml --step 1e-300
+    2 makes more than 1e9 rows
+run mechanisms/tlv.toml --step -1
+    2 --step is -1; expected a positive time
+run mechanisms/tlv.toml --stop inf
+    2 --stop is inf; expected a finite number
+run mechanisms/tlv.toml --start nan
+    2 --start is NaN; expected a finite number
+run mechanisms/tlv.toml --step 0.01 --stop 1e300
+    2 a step of 0.01 s from 0 s to 1e300 s makes more than 1e9 rows
+run mechanisms/tlv.toml --step 1e-6 --stop 1 -p x.svg
+    2 --plot: 1000001 rows are more than the 1000000 of which a picture is made
+# Drivers and parameters.
+run mechanisms/tlv.toml --drive side_length
+    2 has no `=`
+run mechanisms/tlv.toml --drive side=1
+    2 --drive: no driver `side`; did you mean `side_length`?
+run mechanisms/tlv.toml --drive foo=1
+    2 --drive: no driver `foo`; expected `side_length`
+run mechanisms/tlv.toml --drive side_length=0.3+*t
+    2 ^
+run mechanisms/tlv.toml --set bas=1
+    2 --set: no parameter `bas`; did you mean `base`?
+run mechanisms/tlv.toml --set side_length=1
+    2 --set: no parameter `side_length`; `side_length` is a driver: use --drive
+run mechanisms/tlv.toml --drive base=1
+    2 --drive: no driver `base`; `base` is a parameter: use --set
+run mechanisms/tlv.toml --stop 0,5
+    2 expected a number of seconds, such as 0.5
+run mechanisms/tlv.toml -o motion.xls
+    2 `motion.xls` would be CSV: an Excel file has the extension .xlsx
+report mechanisms/tlv.toml -o report.pdf
+    2 `report.pdf` has neither the extension .html nor .htm
+check mechanisms/tlv
+    2 did you mean `mechanisms/tlv.toml`?
+run mechanisms/tlv.toml --set base=0
+    2 --set: `base` cannot be set to 0: expected at least 0.001 m
+run mechanisms/tlv.toml --set base=-1e300
+    2 --set: `base` cannot be set to -1e300: expected at least 0.001 m
+run mechanisms/tlv.toml --set base=sqrt(-arm_length)
+    2 --set: `base` is NaN: expected a finite number
+run mechanisms/tlv.toml --set base=1 -s 'base = 1'
+    2 --set: `base` is given twice
+draw mechanisms/tlv.toml -d side_length=1 -d side_length=1
+    2 --drive: `side_length` is given twice
+run mechanisms/tlv.toml --drive side_length=
+    2 --drive: the expression is empty; write a number or a formula over the parameters\n
+run mechanisms/tlv.toml --drive 'side_length= 1/t'
+    2 --drive: at t = 0, the value of `1/t` is not finite\n  1/t\n  ^\n
+draw mechanisms/tlv.toml --drive side_length=sqrt(t)
+    2 --drive: at t = 0, the velocity of `sqrt(t)` is not finite\n
+run mechanisms/tlv.toml --set base=t
+    2 --set
+# Pictures and files.
+draw mechanisms/tlv.toml -o tlv.pdf
+    2 `tlv.pdf` has neither the extension .svg nor .png
+draw mechanisms/tlv.toml -o svg
+    2 neither the extension
+draw mechanisms/tlv.toml -o no_such_folder/x.svg
+    2 cannot write `no_such_folder/x.svg`
+draw mechanisms/tlv.toml --width 0
+    2 invalid value '0' for '--width <PIXELS>'
+run mechanisms/tlv.toml --animate tlv.mp4
+    2 `tlv.mp4` has none of the extensions .html, .htm, .svg and .gif
+run mechanisms/hatch.toml --animate hatch.svg --forces
+    2 --forces: a moving picture has no arrows of forces; a page has them, .html
+watch no_such_file.toml
+    2 cannot read `no_such_file.toml`
+watch mechanisms/tlv.toml --drive side=1
+    2 no driver `side`; did you mean `side_length`?
+draw mechanisms/tlv.toml --width -5
+    2 -5 is not in 16..=8192
+export mechanisms/tlv.toml --runtime mechanisms
+    2 no runtime library
+export mechanisms/tlv.toml -o no_such_folder/x.fmu
+    2 cannot write
+";
+
+/// Splits a command line at its spaces, of which those between apostrophes belong to an argument.
+fn arguments(line: &str) -> Vec<&str> {
+    let parts = line.split('\'').enumerate();
+    parts
+        .flat_map(|(k, part)| match k % 2 {
+            0 => part.split_whitespace().collect(),
+            _ => vec![part],
+        })
+        .collect()
+}
+
+#[test]
+fn bad_usage_has_its_status_and_says_what_is_wrong() {
+    let mut lines = RUNS
+        .lines()
+        .filter(|line| !line.is_empty() && !line.starts_with('#'));
+    while let (Some(line), Some(ending)) = (lines.next(), lines.next()) {
+        let (status, message) = ending.trim_start().split_once(' ').unwrap();
+        let assert = biela(&arguments(line)).code(status.parse::<i32>().unwrap());
+        let told = stderr(&assert);
+        assert!(
+            told.contains(&message.replace(r"\n", "\n")),
+            "{line}: {told}"
+        );
     }
-}
-
-#[test]
-fn bad_commands_and_times_exit_with_2() {
-    exit_with_2(&[
-        (&["check"], "required"),
-        (
-            &["check", "no_such_file.toml"],
-            "cannot read `no_such_file.toml`",
-        ),
-        (&["fly"], "unrecognized subcommand"),
-        (
-            &["run", "mechanisms/tlv.toml", "--step", "0"],
-            "expected a positive time",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--stop", "-1"],
-            "must not be before the start",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--step", "1e-300"],
-            "makes more than 1e9 rows",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--step", "-1"],
-            "--step is -1; expected a positive time",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--stop", "inf"],
-            "--stop is inf; expected a finite number",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--start", "nan"],
-            "--start is NaN; expected a finite number",
-        ),
-        (
-            &[
-                "run",
-                "mechanisms/tlv.toml",
-                "--step",
-                "0.01",
-                "--stop",
-                "1e300",
-            ],
-            "a step of 0.01 s from 0 s to 1e300 s makes more than 1e9 rows",
-        ),
-        (
-            &[
-                "run",
-                "mechanisms/tlv.toml",
-                "--step",
-                "1e-6",
-                "--stop",
-                "1",
-                "-p",
-                "x.svg",
-            ],
-            "--plot: 1000001 rows are more than the 1000000 of which a picture is made",
-        ),
-    ]);
-}
-
-#[test]
-fn bad_drivers_and_parameters_exit_with_2() {
-    exit_with_2(&[
-        (
-            &["run", "mechanisms/tlv.toml", "--drive", "side_length"],
-            "has no `=`",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--drive", "side=1"],
-            "--drive: no driver `side`; did you mean `side_length`?",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--drive", "foo=1"],
-            "--drive: no driver `foo`; expected `side_length`",
-        ),
-        (
-            &[
-                "run",
-                "mechanisms/tlv.toml",
-                "--drive",
-                "side_length=0.3+*t",
-            ],
-            "^",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--set", "bas=1"],
-            "--set: no parameter `bas`; did you mean `base`?",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--set", "side_length=1"],
-            "--set: no parameter `side_length`; `side_length` is a driver: use --drive",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--drive", "base=1"],
-            "--drive: no driver `base`; `base` is a parameter: use --set",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--stop", "0,5"],
-            "expected a number of seconds, such as 0.5",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "-o", "motion.xls"],
-            "`motion.xls` would be CSV: an Excel file has the extension .xlsx",
-        ),
-        (
-            &["report", "mechanisms/tlv.toml", "-o", "report.pdf"],
-            "`report.pdf` has neither the extension .html nor .htm",
-        ),
-        (
-            &["check", "mechanisms/tlv"],
-            "did you mean `mechanisms/tlv.toml`?",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--set", "base=0"],
-            "--set: `base` cannot be set to 0: expected at least 0.001 m",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--set", "base=-1e300"],
-            "--set: `base` cannot be set to -1e300: expected at least 0.001 m",
-        ),
-        (
-            &[
-                "run",
-                "mechanisms/tlv.toml",
-                "--set",
-                "base=sqrt(-arm_length)",
-            ],
-            "--set: `base` is NaN: expected a finite number",
-        ),
-        (
-            &[
-                "run",
-                "mechanisms/tlv.toml",
-                "--set",
-                "base=1",
-                "-s",
-                "base = 1",
-            ],
-            "--set: `base` is given twice",
-        ),
-        (
-            &[
-                "draw",
-                "mechanisms/tlv.toml",
-                "-d",
-                "side_length=1",
-                "-d",
-                "side_length=1",
-            ],
-            "--drive: `side_length` is given twice",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--drive", "side_length="],
-            "--drive: the expression is empty; write a number or a formula over the parameters\n",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--drive", "side_length= 1/t"],
-            "--drive: at t = 0, the value of `1/t` is not finite\n  1/t\n  ^\n",
-        ),
-        (
-            &[
-                "draw",
-                "mechanisms/tlv.toml",
-                "--drive",
-                "side_length=sqrt(t)",
-            ],
-            "--drive: at t = 0, the velocity of `sqrt(t)` is not finite\n",
-        ),
-        (&["run", "mechanisms/tlv.toml", "--set", "base=t"], "--set"),
-    ]);
-}
-
-#[test]
-fn bad_pictures_and_files_exit_with_2() {
-    exit_with_2(&[
-        (
-            &["draw", "mechanisms/tlv.toml", "-o", "tlv.pdf"],
-            "`tlv.pdf` has neither the extension .svg nor .png",
-        ),
-        (
-            &["draw", "mechanisms/tlv.toml", "-o", "svg"],
-            "neither the extension",
-        ),
-        (
-            &["draw", "mechanisms/tlv.toml", "-o", "no_such_folder/x.svg"],
-            "cannot write `no_such_folder/x.svg`",
-        ),
-        (
-            &["draw", "mechanisms/tlv.toml", "--width", "0"],
-            "invalid value '0' for '--width <PIXELS>'",
-        ),
-        (
-            &["run", "mechanisms/tlv.toml", "--animate", "tlv.mp4"],
-            "`tlv.mp4` has none of the extensions .html, .htm, .svg and .gif",
-        ),
-        (
-            &[
-                "run",
-                "mechanisms/hatch.toml",
-                "--animate",
-                "hatch.svg",
-                "--forces",
-            ],
-            "--forces: a moving picture has no arrows of forces; a page has them, .html",
-        ),
-        (
-            &["watch", "no_such_file.toml"],
-            "cannot read `no_such_file.toml`",
-        ),
-        (
-            &["watch", "mechanisms/tlv.toml", "--drive", "side=1"],
-            "no driver `side`; did you mean `side_length`?",
-        ),
-        (
-            &["draw", "mechanisms/tlv.toml", "--width", "-5"],
-            "-5 is not in 16..=8192",
-        ),
-        (
-            &["export", "mechanisms/tlv.toml", "--runtime", "mechanisms"],
-            "no runtime library",
-        ),
-        (
-            &[
-                "export",
-                "mechanisms/tlv.toml",
-                "-o",
-                "no_such_folder/x.fmu",
-            ],
-            "cannot write",
-        ),
-    ]);
 }
 
 #[cfg(target_os = "linux")]
