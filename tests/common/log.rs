@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use biela::fmi::{Category, Interface, MechanismModel, Sink, Status};
+use biela::fmi::{Category, Interface, MechanismModel, Sink, Status, Version};
 use biela::mechanism::Mechanism;
 
 use super::Instance;
@@ -40,6 +40,17 @@ impl Heard {
     ) -> Instance {
         let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
         Instance::new(model, Box::new(self.clone()), logging_on)
+    }
+
+    /// Creates an instance of a version of FMI that writes all its messages to this log.
+    pub(crate) fn instance_of(
+        &self,
+        version: Version,
+        mechanism: Arc<Mechanism>,
+        interface: Interface,
+    ) -> Instance {
+        let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
+        Instance::of_version(version, model, Box::new(self.clone()), true)
     }
 
     /// Returns the messages of a category since the last call, and forgets all others.

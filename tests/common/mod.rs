@@ -4,12 +4,13 @@
 
 pub(crate) mod exact;
 pub(crate) mod log;
+pub(crate) mod mechanisms;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Quantity, Sink, Status};
-use biela::kinematics::{Curve, Path, Solver};
+use biela::kinematics::{Curve, Error, Path, Solver};
 use biela::mechanism::{Expression, Mechanism, Source};
 
 pub(crate) type Instance = biela::fmi::Instance<MechanismModel>;
@@ -26,6 +27,11 @@ impl Sink for Silent {
 pub(crate) fn instance_of(mechanism: Arc<Mechanism>, interface: Interface) -> Instance {
     let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
     Instance::new(model, Box::new(Silent), true)
+}
+
+/// A new instance of a shipped mechanism for co-simulation.
+pub(crate) fn co_simulation(name: &str) -> Instance {
+    instance_of(shipped(name), Interface::CoSimulation)
 }
 
 /// Returns the value references of the variables whose quantities `which` selects.
@@ -87,6 +93,15 @@ pub(crate) fn assembled(mechanism: &Arc<Mechanism>) -> (Solver, Path) {
     let mut solver = Solver::new(Arc::clone(mechanism)).expect("the drivers match");
     solver.assemble(&path).expect("the mechanism closes");
     (solver, path)
+}
+
+/// Assembles a mechanism; returns its solver, or why it cannot.
+pub(crate) fn solve(text: &str) -> Result<Solver, Error> {
+    let mechanism = parse(text);
+    let path = Path::new(&mechanism);
+    let mut solver = Solver::new(mechanism)?;
+    solver.assemble(&path)?;
+    Ok(solver)
 }
 
 /// The text of a mechanism file with other estimates: `estimates` has, one after the other, the

@@ -10,9 +10,9 @@ use biela::fmi::{
     StepProgress, Version,
 };
 
-use crate::clauses::{get, set, started};
+use crate::clauses::{get, running, set, started};
 use crate::common::log::Heard;
-use crate::common::{Instance, instance_of, shipped};
+use crate::common::{Instance, co_simulation, shipped};
 
 const STEP: f64 = 0.1;
 
@@ -191,7 +191,7 @@ fn a_driven_step_that_takes_too_long_is_discarded() {
 /// Initialization has the same budget.
 #[test]
 fn a_start_that_takes_too_long_is_refused() {
-    let mut instance = instance_of(shipped("four_bar"), Interface::CoSimulation);
+    let mut instance = co_simulation("four_bar");
     instance.setup_experiment(0.0, None).expect("legal");
     // A way to the angle, and one by the turn.
     set(
@@ -211,7 +211,7 @@ fn a_start_that_takes_too_long_is_refused() {
 /// The budget is part of a saved state, and of no value; a reset gives the start back.
 #[test]
 fn the_budget_is_kept_and_reset_as_parameters_are() {
-    let mut instance = started(instance_of(shipped("four_bar"), Interface::CoSimulation));
+    let mut instance = running("four_bar");
     set(&mut instance, [("solver.budget", 1234.0)]);
     let state = instance.fmu_state().expect("legal");
     let bytes = instance.serialize_fmu_state(&state).expect("its own");

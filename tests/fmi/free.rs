@@ -55,26 +55,12 @@ fn mechanism(name: &str) -> Arc<Mechanism> {
 }
 
 fn instance(name: &str, interface: Interface, version: Version) -> Instance {
-    let mechanism = mechanism(name);
-    let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
-    Instance::of_version(version, model, Box::new(Heard::default()), false)
+    Heard::default().instance_of(version, mechanism(name), interface)
 }
 
 /// Initializes in co-simulation at 0 s.
 fn running(name: &str, version: Version) -> Instance {
-    let mut instance = instance(name, Interface::CoSimulation, version);
-    match version {
-        Version::Fmi2 => {
-            instance.setup_experiment(0.0, None).expect("legal");
-            instance.enter_initialization_mode().expect("legal");
-        }
-        _ => {
-            let entered = instance.enter_initialization_mode_at(0.0, None);
-            entered.expect("legal");
-        }
-    }
-    instance.exit_initialization_mode().expect("it starts");
-    instance
+    started(instance(name, Interface::CoSimulation, version))
 }
 
 fn now(instance: &mut Instance) -> f64 {

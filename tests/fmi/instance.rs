@@ -2,23 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::clauses::{running, started};
 use crate::common::log::Heard;
 use crate::common::{Instance, instance_of, parse, shipped};
 use biela::fmi::{Category, Error, Failure, Interface, State, value_reference};
 
-fn running(name: &str) -> Instance {
-    started(instance_of(shipped(name), Interface::CoSimulation))
-}
-
 fn running_with(name: &str, heard: &Heard) -> Instance {
     started(heard.instance(shipped(name), Interface::CoSimulation, true))
-}
-
-fn started(mut instance: Instance) -> Instance {
-    instance.setup_experiment(0.0, None).expect("legal");
-    instance.enter_initialization_mode().expect("legal");
-    instance.exit_initialization_mode().expect("it starts");
-    instance
 }
 
 /// Values of the outputs with these names.

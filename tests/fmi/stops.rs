@@ -44,8 +44,7 @@ fn driven() -> Arc<Mechanism> {
 }
 
 fn instance(heard: &Heard, interface: Interface, version: Version) -> Instance {
-    let model = MechanismModel::new(driven(), interface).expect("it assembles");
-    FmiInstance::of_version(version, model, Box::new(heard.clone()), true)
+    heard.instance_of(version, driven(), interface)
 }
 
 /// A step of 0.1 s along 1 m/s from 0.05 m, held where it starts otherwise.

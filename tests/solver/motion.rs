@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use crate::common::mechanisms::crank;
 use crate::common::{assembled, parse, shipped};
 use biela::kinematics::{Path, Rates, Reason, Solver};
 use biela::mechanism::{DriverId, Jet, ParameterId};
@@ -17,15 +18,9 @@ const LAWS: [&str; 8] = [
     "trapezoidal",
 ];
 
-/// A wheel on ground whose angle follows the motion.
-fn wheel(motion: &str) -> Solver {
-    let mechanism = parse(&format!(
-        "format = 1\nname = 'wheel'\n[ground.markers]\nO = [0, 0]\n[bodies.wheel]\n\
-         markers = {{ O = [0, 0], rim = [1, 0] }}\n[joints]\n\
-         O = {{ type = 'revolute', markers = ['ground.O', 'wheel.O'] }}\n[drivers]\n\
-         turn = {{ coordinate = 'angle', markers = ['ground.O', 'wheel.O'], motion = {motion} }}\n"
-    ));
-    assembled(&mechanism).0
+/// A crank whose angle follows the motion.
+fn turning(motion: &str) -> Solver {
+    assembled(&parse(&crank(&format!("motion = {motion}")))).0
 }
 
 fn at(solver: &Solver, time: f64) -> Jet {
@@ -45,7 +40,7 @@ fn rates_are_the_derivatives_of_the_value() {
             if ends == "natural" && law != "spline" {
                 continue;
             }
-            let solver = wheel(&format!(
+            let solver = turning(&format!(
                 "{{ table = {points}, law = '{law}', ends = '{ends}' }}"
             ));
             // Away from where pieces meet, whose higher derivatives jump.
@@ -66,7 +61,7 @@ fn rates_are_the_derivatives_of_the_value() {
 fn ends_are_as_asked_for() {
     let rest = |value| Jet::constant(value);
     for law in LAWS {
-        let solver = wheel(&format!(
+        let solver = turning(&format!(
             "{{ table = [[1, 2], [2, 5], [3, 4]], law = '{law}' }}"
         ));
         assert_eq!(at(&solver, 0.0), rest(2.0), "{law}");
@@ -76,7 +71,7 @@ fn ends_are_as_asked_for() {
         }
     }
     // A spline without bending is a straight line, and goes on as one.
-    let natural = wheel("{ table = [[1, 2], [2, 4], [3, 6]], ends = 'natural' }");
+    let natural = turning("{ table = [[1, 2], [2, 4], [3, 6]], ends = 'natural' }");
     for time in [-10.0, 1.5, 20.0] {
         let jet = at(&natural, time);
         assert!((jet.value - 2.0 * time).abs() < 1e-14);
@@ -87,7 +82,7 @@ fn ends_are_as_asked_for() {
 /// An indexing table: a quarter turn in the first half of each second, at rest in the other.
 #[test]
 fn periodic_motions_keep_their_phase_over_a_thousand_turns() {
-    let mut solver = wheel(
+    let mut solver = turning(
         "{ table = [[0, 0], [0.5, '90*deg'], [1, '90*deg']], law = 'cycloidal', ends = 'periodic' }",
     );
     let mut path = Path::new(solver.mechanism());
@@ -161,7 +156,7 @@ fn times_that_parameters_disorder_are_refused_and_lose_nothing() {
 /// √(1 − t) ends with an endless slope, and has no value beyond. The mechanism is not to blame.
 #[test]
 fn a_motion_without_rates_is_named() {
-    let mut solver = wheel("'sqrt(1 - t)'");
+    let mut solver = turning("'sqrt(1 - t)'");
     let mut path = Path::new(solver.mechanism());
     path.duration = 1.0;
     solver.track(&path).expect("a wheel turns freely");
@@ -183,14 +178,7 @@ fn a_motion_without_rates_is_named() {
 #[test]
 fn a_file_beside_gives_the_same_motion() {
     let folder = tempfile::tempdir().expect("a folder can be made");
-    let text = |motion: &str| {
-        format!(
-            "format = 1\nname = 'wheel'\n[ground.markers]\nO = [0, 0]\n[bodies.wheel]\n\
-             markers = {{ O = [0, 0] }}\n[joints]\n\
-             O = {{ type = 'revolute', markers = ['ground.O', 'wheel.O'] }}\n[drivers]\n\
-             turn = {{ coordinate = 'angle', markers = ['ground.O', 'wheel.O'], motion = {motion} }}\n"
-        )
-    };
+    let text = |motion: &str| crank(&format!("motion = {motion}"));
     std::fs::write(
         folder.path().join("turn.csv"),
         "ms;deg;note\n0;0;start\n500;60;\n2000;-30;end\n",

@@ -4,7 +4,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::common::{assembled, parse, shipped};
+use crate::common::{assembled, mechanisms, parse, shipped};
 use biela::kinematics::{End, RangeSettings, Reason, SingularKind, Solver};
 use biela::mechanism::DriverId;
 
@@ -300,17 +300,12 @@ fn the_transmission_angle_of_a_dyad_is_that_between_its_links() {
 
 /// Returns a slider-crank with this radius and rod; a marker far away makes it large.
 fn slider_crank(radius: f64, rod: f64) -> String {
-    let text = "format = 1\nname = 'stubby'\n[ground.markers]\nO = [0, 0]\n[bodies.crank]\n\
-        markers = { O = [0, 0], A = [RADIUS, 0], far = [0, 3] }\n[bodies.rod]\n\
-        markers = { A = [0, 0], B = [ROD, 0] }\nestimate = [RADIUS, 0, -0.3]\n[bodies.slide]\n\
-        markers = { B = [0, 0] }\nestimate = [RADIUS, 0, 0]\n[joints]\n\
-        O = { type = 'revolute', markers = ['ground.O', 'crank.O'] }\n\
-        A = { type = 'revolute', markers = ['crank.A', 'rod.A'] }\n\
-        B = { type = 'revolute', markers = ['rod.B', 'slide.B'] }\n\
-        guide = { type = 'translational', markers = ['ground.O', 'slide.B'] }\n[drivers]\n\
-        turn = { coordinate = 'angle', markers = ['ground.O', 'crank.O'], start = 0.3 }\n";
-    text.replace("RADIUS", &radius.to_string())
-        .replace("ROD", &rod.to_string())
+    let at_pin = format!("{radius}, 0, -0.3");
+    let text = mechanisms::slider_crank([radius, rod], 0.0, "0.3", ["0, 0, 0", &at_pin, &at_pin]);
+    text.replace(
+        "markers = { O = [0, 0], A",
+        "markers = { far = [0, 3], O = [0, 0], A",
+    )
 }
 
 /// The angle is that between the rod and the normal of the guide, however small the rod is beside

@@ -1,6 +1,6 @@
 //! Directional derivatives of every shipped mechanism against differences.
 
-use crate::common::{Instance, instance_of, shipped, stems};
+use crate::common::{Instance, co_simulation, instance_of, shipped, stems};
 use crate::differences::{DIFFERENCE, differences, move_inputs, references};
 use biela::fmi::{Causality, Interface, Quantity, Variable, value_reference};
 use biela::kinematics::OutputSource;
@@ -10,7 +10,7 @@ fn is_parameter(variable: &Variable<Quantity>) -> bool {
 }
 
 fn moving(name: &str) -> Instance {
-    let mut instance = instance_of(shipped(name), Interface::CoSimulation);
+    let mut instance = co_simulation(name);
     move_inputs(&mut instance);
     instance
 }
@@ -86,7 +86,7 @@ fn derivatives_are_linear_in_the_direction() {
 /// An estimated velocity changes with the newest position; one that is given would replace it.
 #[test]
 fn an_estimate_is_differentiated() {
-    let mut instance = instance_of(shipped("pendulum"), Interface::CoSimulation);
+    let mut instance = co_simulation("pendulum");
     instance.setup_experiment(0.0, None).unwrap();
     instance.enter_initialization_mode().unwrap();
     instance.exit_initialization_mode().unwrap();

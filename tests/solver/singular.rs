@@ -8,6 +8,7 @@ use biela::mechanism::{Jet, Mechanism};
 use proptest::prelude::*;
 
 use crate::common::exact::{Errors, Exact};
+use crate::common::mechanisms::four_bar_at;
 use crate::common::{assembled, parse, shipped, straight_to};
 
 /// The parallelogram as shipped, and crossed: B is mirrored in the line from A to O4, so that the
@@ -239,35 +240,6 @@ fn a_body_that_a_block_does_not_read_changes_no_crossing() {
     assert_eq!(crossing(&with_wheel), crossing(&alone));
 }
 
-/// A four-bar driven by a link that does not turn fully: lengths of crank, coupler, rocker and
-/// base, and the assembly mode.
-fn four_bar(lengths: [f64; 4], crank: f64, side: f64) -> Option<Arc<Mechanism>> {
-    let [a, b, c, d] = lengths;
-    let (x, y) = (a * crank.cos(), a * crank.sin());
-    let diagonal = (d - x).hypot(y);
-    let cosine = (diagonal * diagonal + b * b - c * c) / (2.0 * diagonal * b);
-    if cosine.abs() > 0.99 {
-        return None;
-    }
-    let coupler = f64::atan2(-y, d - x) + side * cosine.acos();
-    let rocker = (y + b * coupler.sin()).atan2(x + b * coupler.cos() - d);
-    Some(parse(&format!(
-        "format = 1\nname = 'bar'\n[ground.markers]\nO2 = [0, 0]\nO4 = [{d:?}, 0]\n\
-         [bodies.crank]\nmarkers = {{ O = [0, 0], A = [{a:?}, 0] }}\n\
-         estimate = [0, 0, {crank:?}]\n\
-         [bodies.coupler]\nmarkers = {{ A = [0, 0], B = [{b:?}, 0] }}\n\
-         estimate = [{x:?}, {y:?}, {coupler:?}]\n\
-         [bodies.rocker]\nmarkers = {{ O = [0, 0], B = [{c:?}, 0] }}\n\
-         estimate = [{d:?}, 0, {rocker:?}]\n\
-         [joints]\nO2 = {{ type = 'revolute', markers = ['ground.O2', 'crank.O'] }}\n\
-         A = {{ type = 'revolute', markers = ['crank.A', 'coupler.A'] }}\n\
-         B = {{ type = 'revolute', markers = ['coupler.B', 'rocker.B'] }}\n\
-         O4 = {{ type = 'revolute', markers = ['ground.O4', 'rocker.O'] }}\n\
-         [drivers]\nu = {{ coordinate = 'angle', markers = ['ground.O2', 'crank.O'], \
-         start = {crank:?} }}\n"
-    )))
-}
-
 /// The crank angles, from 0 to pi, at which coupler and rocker line up: where the diagonal is
 /// their sum or their difference. By half-angles, which lose nothing near 0 and pi.
 fn limits([a, b, c, d]: [f64; 4]) -> impl Iterator<Item = f64> {
@@ -289,10 +261,10 @@ proptest! {
         crank in -3.1..3.1_f64,
         side in prop::sample::select(vec![-1.0, 1.0]),
     ) {
-        let Some(mechanism) = four_bar(lengths, crank, side) else {
+        let Some(text) = four_bar_at(lengths, crank, side) else {
             return Ok(());
         };
-        let (mut solver, mut path) = assembled(&mechanism);
+        let (mut solver, mut path) = assembled(&parse(&text));
         let limits: Vec<f64> = limits(lengths).flat_map(|limit| [limit, -limit]).collect();
         let start = solver.pose().clone();
         for way in [TAU, -TAU] {
@@ -341,7 +313,7 @@ fn a_slightly_wrong_parallelogram_moves_as_its_exact_lengths_say() {
         }) {
             let mut lengths = [0.1, 0.2, 0.1, 0.2];
             lengths[link] *= 1.0 + sign * wrong;
-            let mechanism = four_bar(lengths, start, side).expect("it closes");
+            let mechanism = parse(&four_bar_at(lengths, start, side).expect("it closes"));
             let (mut solver, mut path) = assembled(&mechanism);
             let [a, b, c, d] = lengths;
             let limit = limits(lengths)

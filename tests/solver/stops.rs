@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 
-use crate::common::{assembled, parse, straight_to};
+use crate::common::{assembled, mechanisms, parse, straight_to};
 use crate::generated::{Ground, chain};
 use biela::kinematics::{
     Blocked, Curve, End, Error, Path, RangeSettings, Reason, Solver, StopLimit,
@@ -17,36 +17,19 @@ use biela::mechanism::{DriverId, Mechanism};
 const PLACE: f64 = 1e-12;
 
 /// A crank of 0.1 m and a rod of 0.3 m, whose slider is at x = r cos θ + √(l² − r² sin² θ).
-fn slider_crank(stops: &str, start: &str) -> Arc<Mechanism> {
-    parse(&format!(
-        r#"
-format = 1
-name = "slider_crank"
+fn slider_crank(stops: &str) -> Arc<Mechanism> {
+    let estimates = [
+        "0, 0, '100*deg'",
+        "'0.1*cos(100*deg)', '0.1*sin(100*deg)', '-0.3*sin(100*deg)'",
+        "'0.1*cos(100*deg) + 0.3', 0, 0",
+    ];
+    let more = r#"
 [parameters]
-reach = {{ value = 0.35, unit = "m" }}
-[ground.markers]
-O = [0, 0]
-[bodies.crank]
-estimate = ["0.05*cos({start})", "0.05*sin({start})", "{start}"]
-markers = {{ O = [-0.05, 0], A = [0.05, 0] }}
-[bodies.rod]
-estimate = ["0.1*cos({start}) + 0.15", "0.05*sin({start})", "-0.3*sin({start})"]
-markers = {{ A = [-0.15, 0], B = [0.15, 0] }}
-[bodies.slider]
-estimate = ["0.1*cos({start}) + 0.3", 0, 0]
-markers = {{ B = [0, 0] }}
-[joints]
-O = {{ type = "revolute", markers = ["ground.O", "crank.O"] }}
-A = {{ type = "revolute", markers = ["crank.A", "rod.A"] }}
-B = {{ type = "revolute", markers = ["rod.B", "slider.B"] }}
-guide = {{ type = "translational", markers = ["ground.O", "slider.B"] }}
-[drivers]
-turn = {{ coordinate = "angle", markers = ["ground.O", "crank.O"], start = "{start}" }}
+reach = { value = 0.35, unit = "m" }
 [measures]
-travel = {{ coordinate = "x", markers = ["ground.O", "slider.B"] }}
-{stops}
-"#
-    ))
+travel = { coordinate = "x", markers = ["ground.O", "slider.B"] }
+"#;
+    parse(&(mechanisms::slider_crank([0.1, 0.3], 0.0, "100*deg", estimates) + more + stops))
 }
 
 /// The angle from 0 to π at which the slider is at x, by the law of cosines.
@@ -73,7 +56,7 @@ fn angle(solver: &Solver) -> f64 {
 #[test]
 fn a_slider_ends_at_its_stop() {
     let stops = "[stops]\nbump = { of = \"travel\", max = 0.35 }";
-    let mechanism = slider_crank(stops, "100*deg");
+    let mechanism = slider_crank(stops);
     let limit = angle_at(0.35);
     // At the end of the step, far beyond it, beyond it and back inside, and after a turn.
     for to in [limit - 1e-3, 0.2, -1.5, -TAU + 1.5] {
@@ -95,7 +78,7 @@ fn a_slider_ends_at_its_stop() {
 
 #[test]
 fn the_motion_goes_on_away_from_a_stop() {
-    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.35 }", "100*deg");
+    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.35 }");
     let (mut solver, mut path) = assembled(&mechanism);
     go(&mut solver, &mut path, 0.0).expect_err("the stop is in the way");
     let at_stop = solver.pose().clone();
@@ -123,7 +106,7 @@ fn the_motion_goes_on_away_from_a_stop() {
 
 #[test]
 fn a_step_into_a_stop_equals_many_small_ones() {
-    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.39 }", "100*deg");
+    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.39 }");
     let limit = angle_at(0.39);
     for parts in [1, 7, 100, 5000] {
         let (mut solver, mut path) = assembled(&mechanism);
@@ -149,7 +132,7 @@ fn a_stop_that_is_grazed_ends_no_motion() {
         ("0.4 - 1e-6", false),
     ] {
         let stops = format!("[stops]\nbump = {{ of = \"travel\", max = \"{max}\" }}");
-        let mechanism = slider_crank(&stops, "100*deg");
+        let mechanism = slider_crank(&stops);
         let (mut solver, mut path) = assembled(&mechanism);
         let gone = go(&mut solver, &mut path, -1.0);
         match gone {
@@ -179,14 +162,14 @@ near = { of = "travel", max = 0.36, min = 0.1 }
 turned = { coordinate = "angle", markers = ["ground.O", "crank.O"], min = "20*deg" }
 same = { of = "turn", min = "20*deg" }
 "#;
-    let mechanism = slider_crank(stops, "100*deg");
+    let mechanism = slider_crank(stops);
     let (mut solver, mut path) = assembled(&mechanism);
     let blocked = go(&mut solver, &mut path, -1.0).expect_err("there are stops");
     assert_eq!(stop_of(&blocked).stop, "near");
     assert!((angle(&solver) - angle_at(0.36)).abs() < PLACE);
     // At the same place the first in the file.
     let stops = &stops.replace("0.36", "0.5").replace("0.38", "0.5");
-    let (mut solver, mut path) = assembled(&slider_crank(stops, "100*deg"));
+    let (mut solver, mut path) = assembled(&slider_crank(stops));
     let blocked = go(&mut solver, &mut path, -1.0).expect_err("there are stops");
     assert_eq!(
         stop_of(&blocked).to_string(),
@@ -198,7 +181,7 @@ same = { of = "turn", min = "20*deg" }
 #[test]
 fn angles_count_turns() {
     let stops = "[stops]\nwound = { of = \"turn\", max = \"2000*deg\" }";
-    let (mut solver, mut path) = assembled(&slider_crank(stops, "100*deg"));
+    let (mut solver, mut path) = assembled(&slider_crank(stops));
     go(&mut solver, &mut path, 100.0).expect_err("2000 degrees are fewer");
     let limit = 2000_f64.to_radians();
     assert!((angle(&solver) - limit).abs() < PLACE * limit);
@@ -208,7 +191,7 @@ fn angles_count_turns() {
 #[test]
 fn a_limit_that_moves_ends_the_motion() {
     let stops = "[stops]\nbump = { of = \"travel\", max = \"reach\" }";
-    let mechanism = slider_crank(stops, "100*deg");
+    let mechanism = slider_crank(stops);
     let (mut solver, mut path) = assembled(&mechanism);
     let reach = mechanism.parameter_id("reach").expect("it is declared");
     let x = |angle: f64| {
@@ -248,7 +231,7 @@ fn a_limit_that_moves_ends_the_motion() {
 #[test]
 fn limits_in_the_wrong_order_are_no_mechanism() {
     let stops = "[stops]\nbump = { of = \"travel\", max = \"reach\", min = 0.1 }";
-    let mechanism = slider_crank(stops, "100*deg");
+    let mechanism = slider_crank(stops);
     let (mut solver, mut path) = assembled(&mechanism);
     path.to[0] = 0.05;
     // It is refused where it happens; the limit meets the slider before.
@@ -263,7 +246,7 @@ fn limits_in_the_wrong_order_are_no_mechanism() {
 
 #[test]
 fn a_start_beyond_a_stop_is_refused() {
-    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.25 }", "100*deg");
+    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.25 }");
     let path = Path::new(&mechanism);
     let mut solver = Solver::new(mechanism).expect("the driver matches");
     let error = solver.assemble(&path).expect_err("it is beyond");
@@ -277,7 +260,7 @@ fn a_start_beyond_a_stop_is_refused() {
 /// On the way to a start the motion leads through stops, which is no motion of the mechanism.
 #[test]
 fn a_start_may_be_behind_a_stop_on_the_way() {
-    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.35 }", "100*deg");
+    let mechanism = slider_crank("[stops]\nbump = { of = \"travel\", max = 0.35 }");
     let (mut solver, mut path) = assembled(&mechanism);
     let home = solver.pose().clone();
     straight_to(&solver, &mut path, -1.5);
@@ -293,7 +276,7 @@ fn a_start_may_be_behind_a_stop_on_the_way() {
 #[test]
 fn a_range_ends_at_stops() {
     let stops = "[stops]\nbump = { of = \"travel\", max = 0.35, min = 0.22 }";
-    let (mut solver, _) = assembled(&slider_crank(stops, "100*deg"));
+    let (mut solver, _) = assembled(&slider_crank(stops));
     let range = solver.range(DriverId(0), &RangeSettings::default());
     for (end, x) in [(&range.lower, 0.35), (&range.upper, 0.22)] {
         let End::Stop { value, limit } = end else {
@@ -354,36 +337,10 @@ fn rocker_at(crank: f64) -> f64 {
 }
 
 fn four_bar(stop: &str, start: f64) -> Arc<Mechanism> {
-    let [ax, ay] = [0.1 * start.cos(), 0.1 * start.sin()];
-    let rocker = rocker_at(start);
-    let [bx, by] = [0.4 + 0.3 * rocker.cos(), 0.3 * rocker.sin()];
-    let coupler = (by - ay).atan2(bx - ax);
+    let text = mechanisms::four_bar_at([0.1, 0.25, 0.3, 0.4], start, 1.0).expect("it turns fully");
     parse(&format!(
-        r#"
-format = 1
-name = "four_bar"
-[ground.markers]
-O = [0, 0]
-C = [0.4, 0]
-[bodies.crank]
-estimate = [0, 0, {start}]
-markers = {{ O = [0, 0], A = [0.1, 0] }}
-[bodies.coupler]
-estimate = [{ax}, {ay}, {coupler}]
-markers = {{ A = [0, 0], B = [0.25, 0] }}
-[bodies.rocker]
-estimate = [0.4, 0, {rocker}]
-markers = {{ C = [0, 0], B = [0.3, 0] }}
-[joints]
-O = {{ type = "revolute", markers = ["ground.O", "crank.O"] }}
-A = {{ type = "revolute", markers = ["crank.A", "coupler.A"] }}
-B = {{ type = "revolute", markers = ["coupler.B", "rocker.B"] }}
-C = {{ type = "revolute", markers = ["ground.C", "rocker.C"] }}
-[drivers]
-turn = {{ coordinate = "angle", markers = ["ground.O", "crank.O"], start = {start} }}
-[stops]
-pin = {{ coordinate = "angle", markers = ["ground.C", "rocker.C"], {stop} }}
-"#
+        "{text}[stops]\n\
+         pin = {{ coordinate = \"angle\", markers = [\"ground.O4\", \"rocker.O\"], {stop} }}\n"
     ))
 }
 

@@ -2,14 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{
-    Causality, Interface, Kind, Quantity, Unknown, Version, describe, value_reference,
-};
+use biela::fmi::{Causality, Kind, Quantity, Unknown, Version, describe, value_reference};
 use biela::kinematics::OutputSource;
 use biela::mechanism::Order;
 
 use crate::clauses::vr;
-use crate::common::{Instance, assembled, instance_of, references, shipped, stems};
+use crate::common::{Instance, assembled, co_simulation, references, shipped, stems};
 
 /// All choices of `rates` and `extrapolation`.
 const SETTINGS: [[i32; 2]; 6] = [[1, 1], [2, 1], [3, 1], [1, 2], [2, 2], [3, 2]];
@@ -48,7 +46,7 @@ fn moving(instance: &Instance, inputs: &[u32], t: f64) -> Vec<f64> {
 
 /// Returns an instance in initialization mode, between the points of every table.
 fn initializing(name: &str, settings: [i32; 2]) -> Instance {
-    let mut instance = instance_of(shipped(name), Interface::CoSimulation);
+    let mut instance = co_simulation(name);
     instance.setup_experiment(0.317, None).expect("legal");
     let choices = references(&instance, |quantity| {
         matches!(quantity, Quantity::RateSource | Quantity::Extrapolation)
@@ -361,7 +359,7 @@ fn derivatives_by_inputs_are_those_of_the_step() {
 fn derivatives_by_time_are_those_of_prescribed_motions() {
     for name in stems("mechanisms", "toml") {
         let at = |start: f64| {
-            let mut instance = instance_of(shipped(&name), Interface::CoSimulation);
+            let mut instance = co_simulation(&name);
             instance.setup_experiment(start, None).expect("legal");
             let inputs = inputs(&instance);
             let values = moving(&instance, &inputs, 0.0);

@@ -7,6 +7,7 @@ use biela::mechanism::Mechanism;
 
 use crate::clauses::{initialized, set, started};
 use crate::common::log::{Heard, Message};
+use crate::common::mechanisms::crank;
 use crate::common::{Instance, parse, shipped};
 
 const LENGTH: &str = "side_length.position";
@@ -118,20 +119,6 @@ left = { coordinate = "angle", markers = ["ground.O", "one.O"], start = 0, max =
 right = { coordinate = "angle", markers = ["ground.P", "other.P"], start = 0, max = 2 }
 "#;
 
-/// A rod on a pivot: its stroke ends at 3 rad.
-const ROD: &str = r#"
-format = 1
-name = "rod_on_pivot"
-[ground.markers]
-O = [0, 0]
-[bodies.rod]
-markers = { O = [0, 0] }
-[joints]
-O = { type = "revolute", markers = ["ground.O", "rod.O"] }
-[drivers]
-angle = { coordinate = "angle", markers = ["ground.O", "rod.O"], start = 0, max = 3 }
-"#;
-
 /// A wrong use: position and velocity of a driver at each step.
 struct Misuse {
     interface: Interface,
@@ -147,8 +134,8 @@ struct Misuse {
 const MISUSES: [Misuse; 5] = [
     Misuse {
         interface: Interface::CoSimulation,
-        mechanism: || parse(ROD),
-        driver: "angle",
+        mechanism: || parse(&crank("start = 0, max = 3")),
+        driver: "turn",
         motion: |step| {
             [
                 if (5..8).contains(&(step % 25)) {
@@ -163,16 +150,16 @@ const MISUSES: [Misuse; 5] = [
     },
     Misuse {
         interface: Interface::CoSimulation,
-        mechanism: || parse(&ROD.replace(", max = 3", "")),
-        driver: "angle",
+        mechanism: || parse(&crank("start = 0")),
+        driver: "turn",
         // 1 rad per step, modulo one turn.
         motion: |step| [f64::from(step) % TAU, 0.0],
         advice: "set `wrapped = true`",
     },
     Misuse {
         interface: Interface::CoSimulation,
-        mechanism: || parse(&ROD.replace(", max = 3", "")),
-        driver: "angle",
+        mechanism: || parse(&crank("start = 0")),
+        driver: "turn",
         // 1 rad per 0.1 s, said to be 3 rad/s.
         motion: |step| [f64::from(step), 3.0],
         advice: "is given as 3 rad/s, but its position changes by 10 rad/s",
@@ -180,11 +167,11 @@ const MISUSES: [Misuse; 5] = [
     // An angle alone.
     Misuse {
         interface: Interface::ModelExchange,
-        mechanism: || parse(&ROD.replace(", max = 3", "")),
-        driver: "angle",
+        mechanism: || parse(&crank("start = 0")),
+        driver: "turn",
         motion: |step| [f64::from(step), 0.0],
         advice: "is given as 0 rad/s, but its position changes by 10 rad/s: connect \
-                 `angle.velocity`",
+                 `turn.velocity`",
     },
     Misuse {
         interface: Interface::CoSimulation,
@@ -270,11 +257,11 @@ fn advice_on_wrong_use_reaches_every_host_once_per_run() {
 #[test]
 fn advice_is_not_repeated_by_a_host_that_goes_back() {
     let heard = Heard::default();
-    let mechanism = parse(ROD);
+    let mechanism = parse(&crank("start = 0, max = 3"));
     let mut instance = started(heard.instance(mechanism, Interface::CoSimulation, false));
     let before = instance.fmu_state().expect("legal");
     for repeat in 0..3 {
-        set(&mut instance, [("angle.position", 3.1)]);
+        set(&mut instance, [("turn.position", 3.1)]);
         instance.do_step(0.0, 1.0).expect("limits are no walls");
         assert_eq!(instance.succeeded() == Status::Warning, repeat == 0);
         assert_eq!(heard.take_all().len(), usize::from(repeat == 0));

@@ -3,16 +3,16 @@
 //!
 //! The triangle's third side ends at 0.65 m.
 
-use biela::fmi::{Error, Failure, Interface, State, Status};
+use biela::fmi::{Error, Failure, State, Status};
 
-use crate::clauses::{get, set, started, vr};
-use crate::common::{Instance, instance_of, shipped};
+use crate::clauses::{get, running, set, vr};
+use crate::common::Instance;
 
 const LENGTH: &str = "side_length.position";
 const LIMIT: f64 = 0.65;
 
 fn triangle() -> Instance {
-    started(instance_of(shipped("tlv"), Interface::CoSimulation))
+    running("tlv")
 }
 
 /// End of a host's run.

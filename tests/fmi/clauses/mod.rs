@@ -15,8 +15,8 @@ mod step_mode;
 mod times;
 mod values;
 
-use crate::common::Instance;
-use biela::fmi::{Interface, value_reference};
+use crate::common::{Instance, co_simulation};
+use biela::fmi::{Interface, Version, value_reference};
 
 /// Returns the value reference of a variable.
 pub(crate) fn vr(instance: &Instance, name: &str) -> u32 {
@@ -43,14 +43,32 @@ pub(crate) fn set<const N: usize>(instance: &mut Instance, values: [(&str, f64);
 
 /// Initializes at 0 s; in model exchange the host integrates then.
 pub(crate) fn started(mut instance: Instance) -> Instance {
-    instance.setup_experiment(0.0, None).expect("legal");
-    initialized(&mut instance);
+    match instance.version() {
+        Version::Fmi2 => {
+            instance.setup_experiment(0.0, None).expect("legal");
+            instance.enter_initialization_mode().expect("legal");
+        }
+        Version::Fmi3 => {
+            let entered = instance.enter_initialization_mode_at(0.0, None);
+            entered.expect("legal");
+        }
+    }
+    leave_initialization(&mut instance);
     instance
+}
+
+/// Returns an instance of a shipped mechanism for co-simulation, initialized at 0 s.
+pub(crate) fn running(name: &str) -> Instance {
+    started(co_simulation(name))
 }
 
 /// Initializes with the settings made.
 pub(crate) fn initialized(instance: &mut Instance) {
     instance.enter_initialization_mode().expect("legal");
+    leave_initialization(instance);
+}
+
+fn leave_initialization(instance: &mut Instance) {
     instance.exit_initialization_mode().expect("it starts");
     if instance.interface() == Interface::ModelExchange {
         instance.new_discrete_states().expect("legal");

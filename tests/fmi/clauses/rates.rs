@@ -4,17 +4,13 @@ use std::f64::consts::{PI, TAU};
 
 use biela::fmi::{Category, Interface, Version, describe};
 
-use crate::clauses::{get, set, started, vr};
+use crate::clauses::{get, running, set, started, vr};
 use crate::common::log::Heard;
-use crate::common::{Instance, assembled, instance_of, parse, shipped};
+use crate::common::{assembled, co_simulation, instance_of, parse, shipped};
 
 const POSITION: &str = "crank_angle.position";
 const VELOCITY: &str = "crank_angle.velocity";
 const ACCELERATION: &str = "crank_angle.acceleration";
-
-fn four_bar() -> Instance {
-    started(instance_of(shipped("four_bar"), Interface::CoSimulation))
-}
 
 /// A crank that turns as u = 1 + sin(2 pi t).
 fn sine(t: f64) -> [f64; 3] {
@@ -26,7 +22,7 @@ fn sine(t: f64) -> [f64; 3] {
 /// leaves the acceleration that is wired.
 #[test]
 fn input_derivatives_of_order_1_leave_the_wired_acceleration() {
-    let mut instance = four_bar();
+    let mut instance = running("four_bar");
     let position = vr(&instance, POSITION);
     let h = 0.01;
     for step in 0..40 {
@@ -49,7 +45,7 @@ fn input_derivatives_of_order_1_leave_the_wired_acceleration() {
 /// The velocity's own derivative carries it to the end of the step, and is the acceleration.
 #[test]
 fn derivatives_of_the_velocity_are_the_acceleration_at_the_end_of_the_step() {
-    let mut instance = four_bar();
+    let mut instance = running("four_bar");
     let velocity = vr(&instance, VELOCITY);
     set(&mut instance, [(VELOCITY, 2.0)]);
     let given = instance.set_real_input_derivatives(&[velocity], &[1], &[3.0]);
@@ -61,7 +57,7 @@ fn derivatives_of_the_velocity_are_the_acceleration_at_the_end_of_the_step() {
 
 #[test]
 fn a_velocity_set_before_the_end_of_initialization_counts_at_the_start_only() {
-    let mut instance = instance_of(shipped("four_bar"), Interface::CoSimulation);
+    let mut instance = co_simulation("four_bar");
     instance.setup_experiment(0.0, None).expect("legal");
     set(&mut instance, [(VELOCITY, 5.0)]);
     instance.enter_initialization_mode().expect("legal");
@@ -348,7 +344,7 @@ fn an_extrapolated_wrapped_angle_keeps_to_its_turn() {
 /// crank rests whatever its position.
 #[test]
 fn derivatives_leave_out_the_short_step_that_rates_left_out() {
-    let mut instance = four_bar();
+    let mut instance = running("four_bar");
     instance.do_step(0.0, 0.005).expect("it turns freely");
     set(&mut instance, [(POSITION, 1.1)]);
     instance.do_step(0.005, 1.0).expect("it turns freely");

@@ -14,15 +14,14 @@ use biela::mechanism::Mechanism;
 
 use crate::clauses::{get, set, vr};
 use crate::common::log::Heard;
+use crate::common::mechanisms::crank;
 use crate::common::{Instance, parse, shipped};
 
 /// The two-link arm with a cylinder reaches 0.7 m at most: base and arm in a line.
 const CYLINDER: &str = "tlv";
 
 fn new_instance(mechanism: Arc<Mechanism>, heard: &Heard) -> Instance {
-    let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it assembles");
-    let sink = Box::new(heard.clone());
-    Instance::of_version(Version::Fmi3, model, sink, true)
+    heard.instance_of(Version::Fmi3, mechanism, Interface::CoSimulation)
 }
 
 fn instance_of(name: &str, agreed: CoSimulation, heard: &Heard) -> Instance {
@@ -193,14 +192,11 @@ fn a_jump_at_an_event_resets_the_estimate() {
 /// The rates of a prescribed motion are exact, in event mode too.
 #[test]
 fn a_prescribed_motion_has_its_rates_at_an_event() {
-    let text = "format = 1\nname = 'turning'\n\
-        [parameters]\nrate = { value = 2.0, unit = 'rad/s', tunable = true }\n\
-        [ground.markers]\nO = [0, 0]\n[bodies.arm.markers]\nO = [0, 0]\n\
-        [joints]\nO = { type = 'revolute', markers = ['ground.O', 'arm.O'] }\n\
-        [drivers]\nq = { coordinate = 'angle', markers = ['ground.O', 'arm.O'], motion = 'rate*t' }";
-    let instance = new_instance(parse(text), &Heard::default());
+    let rate = "parameters.rate = { value = 2.0, unit = 'rad/s', tunable = true }\n";
+    let text = crank("motion = 'rate*t'") + rate;
+    let instance = new_instance(parse(&text), &Heard::default());
     let mut instance = start(instance, agreed(true, false));
-    let rates = ["arm.phi", "q.velocity", "arm.omega"];
+    let rates = ["crank.phi", "turn.velocity", "crank.omega"];
     step(&mut instance, 0.0, 0.5);
     assert_eq!(get(&mut instance, rates), [1.0, 2.0, 2.0]);
     instance.enter_event_mode().unwrap();

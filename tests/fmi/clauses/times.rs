@@ -5,7 +5,8 @@ use biela::fmi::{CoSimulation, Error, Interface, MechanismModel, StepProgress, V
 
 use crate::clauses::{get, initialized, set};
 use crate::common::log::Heard;
-use crate::common::{Instance, instance_of, parse, shipped};
+use crate::common::mechanisms::crank;
+use crate::common::{Instance, co_simulation, instance_of, parse, shipped};
 
 /// Seconds from 1970 to a day in 2020.
 const CALENDAR: f64 = 1.6e9;
@@ -176,26 +177,14 @@ fn a_step_past_the_stop_time_is_refused_at_any_time() {
     assert_refused(past, "passes the stop time");
 }
 
-/// A wheel that turns at 3 rad/s by itself.
-const WHEEL: &str = r#"
-format = 1
-name = "wheel"
-[ground.markers]
-O = [0, 0]
-[bodies.wheel]
-markers = { O = [0, 0] }
-[joints]
-O = { type = "revolute", markers = ["ground.O", "wheel.O"] }
-[drivers]
-angle = { coordinate = "angle", markers = ["ground.O", "wheel.O"], motion = "3*(t - 1.6e9)" }
-"#;
-
 /// The pose belongs to the host's time, whichever way that was rounded: 3 rad/s times the spacing of
 /// numbers there, 2.4e-7 s, is the angle's resolution.
 #[test]
 fn a_prescribed_motion_follows_the_hosts_time() {
+    // It turns at 3 rad/s by itself.
+    let mechanism = parse(&crank("motion = '3*(t - 1.6e9)'"));
     for part in [0.0, 9e-7, -9e-7] {
-        let mut instance = instance_of(parse(WHEEL), Interface::CoSimulation);
+        let mut instance = instance_of(mechanism.clone(), Interface::CoSimulation);
         instance.setup_experiment(CALENDAR, None).expect("legal");
         initialized(&mut instance);
         let h = 1.0;
@@ -203,7 +192,7 @@ fn a_prescribed_motion_follows_the_hosts_time() {
             // A host whose steps are a little longer or shorter than it says.
             let time = CALENDAR + f64::from(n) * h * (1.0 + part);
             instance.do_step(time, h).expect("rounding");
-            let [now, phi, omega] = get(&mut instance, ["time", "wheel.phi", "wheel.omega"]);
+            let [now, phi, omega] = get(&mut instance, ["time", "crank.phi", "crank.omega"]);
             assert_eq!(now.to_bits(), (time + h).to_bits());
             let off = (phi - 3.0 * (now - CALENDAR)).abs();
             assert!(off <= 3.0 * 2.4e-7, "step {n}: {off}");
@@ -249,7 +238,7 @@ fn model_exchange_ends_at_its_stop_time_at_any_time() {
 #[test]
 fn a_dead_point_is_progress_at_any_time() {
     for start in [0.0, CALENDAR] {
-        let mut instance = instance_of(shipped("tlv"), Interface::CoSimulation);
+        let mut instance = co_simulation("tlv");
         instance.setup_experiment(start, None).expect("legal");
         initialized(&mut instance);
         instance.fmu_state().expect("legal");

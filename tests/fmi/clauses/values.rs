@@ -4,13 +4,16 @@ use std::collections::BTreeSet;
 
 use biela::fmi::{Error, Interface, Status, Version, describe};
 
-use crate::clauses::{get, set, started, vr};
-use crate::common::{Instance, assembled, folder, instance_of, parse, shipped, stems};
+use crate::clauses::{get, running, set, started, vr};
+use crate::common::mechanisms::crank;
+use crate::common::{
+    Instance, assembled, co_simulation, folder, instance_of, parse, shipped, stems,
+};
 
 /// "If the actual order is lower, the retrieved value is 0", with `fmi2OK`.
 #[test]
 fn output_derivatives_beyond_the_known_ones_are_zero() {
-    let mut instance = started(instance_of(shipped("four_bar"), Interface::CoSimulation));
+    let mut instance = running("four_bar");
     set(
         &mut instance,
         [
@@ -78,7 +81,7 @@ fn the_file_gives_the_settings_their_start_values() {
 /// used on, which it could not after an error (2.1.3, 2.1.6).
 #[test]
 fn a_parameter_outside_its_limits_is_discarded() {
-    let mut instance = instance_of(shipped("four_bar"), Interface::CoSimulation);
+    let mut instance = co_simulation("four_bar");
     let length = vr(&instance, "crank_length");
     let rates = vr(&instance, "rates");
     let error = instance.set_real(&[length], &[0.0]).expect_err("too short");
@@ -97,13 +100,11 @@ fn a_parameter_outside_its_limits_is_discarded() {
 /// A calculated parameter keeps to its limits too, judged with all values set.
 #[test]
 fn derived_parameters_keep_to_their_limits() {
-    let text = "format = 1\nname = 'limited'\n[parameters]\n\
+    let parameters = "[parameters]\n\
         half = { value = 0.3, unit = 'm', tunable = true }\n\
-        whole = { value = '2*half', unit = 'm', min = 0.5, max = 0.8 }\n\
-        [ground.markers]\nO = [0, 0]\n[bodies.arm.markers]\nO = [0, 0]\nP = ['whole', 0]\n\
-        [joints]\nO = { type = 'revolute', markers = ['ground.O', 'arm.O'] }\n\
-        [drivers]\nq = { coordinate = 'angle', markers = ['ground.O', 'arm.O'], start = 0 }";
-    let mut instance = instance_of(parse(text), Interface::CoSimulation);
+        whole = { value = '2*half', unit = 'm', min = 0.5, max = 0.8 }\n";
+    let mechanism = parse(&(crank("start = 0") + parameters));
+    let mut instance = instance_of(mechanism.clone(), Interface::CoSimulation);
     set(&mut instance, [("half", 0.2)]);
     instance.setup_experiment(0.0, None).expect("legal");
     instance.enter_initialization_mode().expect("legal");
@@ -111,7 +112,7 @@ fn derived_parameters_keep_to_their_limits() {
     let expected = "`whole` = 0.4 is below `min` = 0.5; it follows from other parameters";
     assert!(refused.contains(expected), "{refused}");
 
-    let mut instance = started(instance_of(parse(text), Interface::CoSimulation));
+    let mut instance = started(instance_of(mechanism, Interface::CoSimulation));
     // The limit itself is a value.
     set(&mut instance, [("half", 0.4)]);
     instance.do_step(0.0, 0.1).expect("it may be 0.8");

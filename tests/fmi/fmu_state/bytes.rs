@@ -6,8 +6,8 @@ use biela::fmi::{Error, StateError};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use crate::common::{Instance, shipped};
-use crate::fmu_state::{go_on, initialized, instance, look};
+use crate::common::{Instance, co_simulation, shipped};
+use crate::fmu_state::{go_on, initialized, look};
 
 /// A state in the middle of a run, as bytes.
 fn written(name: &str) -> (Instance, Vec<u8>) {
@@ -30,7 +30,7 @@ fn reason(instance: &mut Instance, bytes: &[u8]) -> StateError {
 #[test]
 fn all_states_of_a_mechanism_have_one_size() {
     let (running, bytes) = written("four_bar");
-    let mut new = instance("four_bar");
+    let mut new = co_simulation("four_bar");
     let state = new.fmu_state().unwrap();
     let first = running.serialized_fmu_state_size(&state);
     assert_eq!(first, Ok(bytes.len()));
@@ -104,7 +104,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 /// that differs, which is the first number of the first of three poses at the end.
 #[test]
 fn initialization_starts_from_the_pose_of_the_state_until_a_reset() {
-    let mut instance = instance("tlv");
+    let mut instance = co_simulation("tlv");
     let state = instance.fmu_state().unwrap();
     let mut bytes = instance.serialize_fmu_state(&state).unwrap();
     let mechanism = shipped("tlv");

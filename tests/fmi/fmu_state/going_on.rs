@@ -3,8 +3,8 @@
 use biela::fmi::{Causality, Error, Failure, Interface, Quantity, State, StateError};
 use biela::mechanism::Order;
 
-use crate::common::{FmuState, Instance, instance_of, references};
-use crate::fmu_state::{act, go_on, initialized, instance, look, mechanisms};
+use crate::common::{FmuState, Instance, co_simulation, instance_of, references};
+use crate::fmu_state::{act, go_on, initialized, look, mechanisms};
 
 /// The state as another instance reads it.
 fn through_bytes(from: &Instance, to: &mut Instance, state: &FmuState) -> FmuState {
@@ -76,7 +76,7 @@ fn getting_a_state_leaves_no_trace() {
 #[test]
 fn a_reset_instance_goes_on_like_a_new_one() {
     for name in mechanisms() {
-        let mut new = instance(&name);
+        let mut new = co_simulation(&name);
         let mut used = initialized(&name, [1, 1]);
         for step in 0..30 {
             let _ = act(&mut used, step);
@@ -164,7 +164,7 @@ fn states_before_the_first_step() {
         (entered, before, left, look(instance))
     };
     for prepare in prepare {
-        let mut instance = instance("four_bar");
+        let mut instance = co_simulation("four_bar");
         prepare(&mut instance);
         let state = instance.fmu_state().unwrap();
         let first = start(&mut instance);
@@ -220,7 +220,7 @@ fn a_host_goes_on_after_termination_and_a_failed_initialization() {
 
     let mut ended = initialized("tlv", [1, 1]);
     ended.terminate().unwrap();
-    let mut broken = instance("tlv");
+    let mut broken = co_simulation("tlv");
     let parameter = references(&broken, |quantity| {
         matches!(quantity, Quantity::Parameter(_))
     })
@@ -253,7 +253,7 @@ fn a_reset_after_setting_a_state_gives_a_new_instance() {
     let read = through_bytes(&used, &mut other, &state);
     other.set_fmu_state(&read).unwrap();
     other.reset().unwrap();
-    assert_eq!(other.fmu_state(), instance("four_bar").fmu_state());
+    assert_eq!(other.fmu_state(), co_simulation("four_bar").fmu_state());
 }
 
 /// The triangle is driven by its length in one file and by its arm in the other.

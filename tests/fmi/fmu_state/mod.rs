@@ -3,8 +3,8 @@
 mod bytes;
 mod going_on;
 
-use crate::common::{Instance, instance_of, references, shipped, stems};
-use biela::fmi::{Error, Interface, Kind, Quantity, State};
+use crate::common::{Instance, co_simulation, references, stems};
+use biela::fmi::{Error, Kind, Quantity, State};
 use biela::mechanism::Order;
 
 /// The shipped mechanisms that can take steps of 0.1 s. The motor of `andrews_free` turns a hundred
@@ -14,12 +14,8 @@ fn mechanisms() -> impl Iterator<Item = String> {
     names.filter(|name| name != "andrews_free")
 }
 
-fn instance(name: &str) -> Instance {
-    instance_of(shipped(name), Interface::CoSimulation)
-}
-
 fn initialized(name: &str, settings: [i32; 2]) -> Instance {
-    let mut instance = instance(name);
+    let mut instance = co_simulation(name);
     instance.setup_experiment(0.0, Some(10.0)).expect("legal");
     let choices: Vec<u32> = references(&instance, |quantity| {
         matches!(quantity, Quantity::RateSource | Quantity::Extrapolation)

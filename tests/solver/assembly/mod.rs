@@ -6,15 +6,11 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 use crate::common::exact::EXACT;
-use crate::common::{assembled, parse, shipped};
+use crate::common::{assembled, parse, shipped, text};
 use crate::generated::{BAR, scissor_lift};
 use biela::kinematics::{Error, Path, Proof, Solver, Verdict};
 use biela::mechanism::Mechanism;
 use proptest::prelude::*;
-
-fn four_bar() -> String {
-    std::fs::read_to_string("mechanisms/four_bar.toml").expect("it is shipped")
-}
 
 fn failure(mechanism: &Arc<Mechanism>) -> Error {
     let path = Path::new(mechanism);
@@ -47,7 +43,7 @@ proptest! {
     /// modes, the sign of the angle from coupler to rocker tells.
     #[test]
     fn rough_estimates_assemble(off in prop::collection::vec(-1.0..1.0_f64, 9)) {
-        let mut text = four_bar();
+        let mut text = text("mechanisms/four_bar.toml");
         for (body, estimate) in [
             ("crank", "[0, 0, \"60*deg\"]"),
             ("coupler", "[0.05, 0.09, \"20*deg\"]"),
@@ -90,7 +86,7 @@ fn estimates_left_out_are_good_enough_for_the_shipped_mechanisms() {
 
 #[test]
 fn an_assembled_angle_is_the_one_nearest_its_estimate() {
-    let text = four_bar()
+    let text = text("mechanisms/four_bar.toml")
         .replace("\"20*deg\"", "\"20*deg - 4*pi\"")
         .replace("\"110*deg\"", "\"110*deg + 2*pi\"");
     let (near, _) = assembled(&shipped("four_bar"));
@@ -118,7 +114,8 @@ fn angle_rows_hold_modulo_one_turn_and_keep_their_turn() {
 /// √(0.8² + 0.4² − 0.8·0.4) = 0.6928 m away, 0.1428 m too far.
 #[test]
 fn a_crank_too_long_is_proved_to_leave_one_joint_open() {
-    let mechanism = parse(&four_bar().replace("value = 0.10", "value = 0.80"));
+    let mechanism =
+        parse(&text("mechanisms/four_bar.toml").replace("value = 0.10", "value = 0.80"));
     let error = failure(&mechanism);
     let Error::NotAssembled {
         verdict,
@@ -152,7 +149,7 @@ fn a_crank_too_long_is_proved_to_leave_one_joint_open() {
 
 #[test]
 fn a_flat_parallelogram_is_singular_not_open() {
-    let text = four_bar()
+    let text = text("mechanisms/four_bar.toml")
         .replace("value = 0.25", "value = 0.40")
         .replace("value = 0.30", "value = 0.10")
         .replace("start = \"60*deg\"", "start = 0")
@@ -168,7 +165,7 @@ fn a_flat_parallelogram_is_singular_not_open() {
 
 #[test]
 fn drivers_have_to_match_the_degrees_of_freedom() {
-    let undriven = four_bar().replace(
+    let undriven = text("mechanisms/four_bar.toml").replace(
         "crank_angle = { coordinate = \"angle\", markers = [\"ground.O2\", \"crank.O\"], start = \"60*deg\" }",
         "",
     );
@@ -181,7 +178,7 @@ fn drivers_have_to_match_the_degrees_of_freedom() {
          drives it, and under `[freedoms]` the forces move it"
     );
 
-    let twice = four_bar().replace(
+    let twice = text("mechanisms/four_bar.toml").replace(
         "[measures]",
         "rocker_angle = { coordinate = \"angle\", markers = [\"ground.O4\", \"rocker.O\"], \
          start = \"120*deg\" }\n[measures]",

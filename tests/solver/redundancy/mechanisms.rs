@@ -149,10 +149,6 @@ pub(crate) fn welded(welds: &str) -> String {
     file("O = [0, 0]", &bodies, &joints, &driver)
 }
 
-pub(crate) fn four_bar() -> String {
-    std::fs::read_to_string("mechanisms/four_bar.toml").expect("it is shipped")
-}
-
 pub(crate) fn with_joints(text: &str, joints: &str) -> String {
     text.replacen("[drivers]", &format!("{joints}\n[drivers]"), 1)
 }

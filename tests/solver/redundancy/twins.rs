@@ -7,10 +7,10 @@ use biela::kinematics::{Rates, Solver};
 use biela::mechanism::{Jet, Mechanism};
 use proptest::prelude::*;
 
-use crate::common::{assembled, parse, shipped, stems, straight_to};
+use crate::common::{assembled, parse, shipped, stems, straight_to, text};
 use crate::redundancy::mechanisms::{
-    angle_driver, belt, body, cam_touched_twice, crank_angle, double, file, four_bar, joint,
-    slider_crank, wheels,
+    angle_driver, belt, body, cam_touched_twice, crank_angle, double, file, joint, slider_crank,
+    wheels,
 };
 
 /// q and its rates of the bodies of `twin`, as `solver` has them: body by body, by name.
@@ -91,8 +91,16 @@ fn redundant_mechanisms_move_like_their_twins() {
             65.0,
         ),
         (slider_crank(&again, "", &crank_angle()), guided, 65.0),
-        (double(&four_bar(), "A"), four_bar(), 60.0),
-        (double(&four_bar(), "O4"), four_bar(), 60.0),
+        (
+            double(&text("mechanisms/four_bar.toml"), "A"),
+            text("mechanisms/four_bar.toml"),
+            60.0,
+        ),
+        (
+            double(&text("mechanisms/four_bar.toml"), "O4"),
+            text("mechanisms/four_bar.toml"),
+            60.0,
+        ),
         (wheels(&belt(false)), wheels(""), 40.0),
     ];
     for (k, (redundant, twin, start)) in pairs.iter().enumerate() {

@@ -1,23 +1,12 @@
 //! A bank of small mechanisms and what has to be said of each.
 
-use std::sync::Arc;
+use biela::kinematics::{Error, Fit};
 
-use biela::kinematics::{Error, Fit, Path, Solver};
-use biela::mechanism::Mechanism;
-
-use crate::common::parse;
+use crate::common::{solve, text};
 use crate::redundancy::mechanisms::{
-    angle_driver, belt, body, cam_touched_twice, crank_angle, file, four_bar, joint, lined_up,
-    parallelogram, rhombic_drive, slider_crank, welded, wheels, with_joints, without_driver,
+    angle_driver, belt, body, cam_touched_twice, crank_angle, file, joint, lined_up, parallelogram,
+    rhombic_drive, slider_crank, welded, wheels, with_joints, without_driver,
 };
-
-fn solve(text: &str) -> Result<Solver, Error> {
-    let mechanism: Arc<Mechanism> = parse(text);
-    let path = Path::new(&mechanism);
-    let mut solver = Solver::new(mechanism)?;
-    solver.assemble(&path)?;
-    Ok(solver)
-}
 
 /// Expected verdict on a mechanism.
 enum Verdict {
@@ -127,7 +116,7 @@ fn redundant_equations_are_counted() {
         (
             "a pin doubled",
             with_joints(
-                &four_bar(),
+                &text("mechanisms/four_bar.toml"),
                 &joint("A_again", "revolute", "coupler.A", "crank.A"),
             ),
             Redundant(&[("joint `A_again`", 2, 2)]),
@@ -194,7 +183,7 @@ fn free_bodies_and_surplus_drivers_are_named() {
         ),
         (
             "driven at both ends",
-            four_bar().replace(
+            text("mechanisms/four_bar.toml").replace(
                 "[measures]",
                 &(angle_driver("rocker_angle", "ground.O4", "rocker.O", 120.0) + "[measures]"),
             ),
@@ -336,7 +325,7 @@ fn contradictions_are_named_with_their_gaps() {
         (
             "redundant, and out of reach",
             with_joints(
-                &four_bar().replace("value = 0.10", "value = 0.80"),
+                &text("mechanisms/four_bar.toml").replace("value = 0.10", "value = 0.80"),
                 &joint("A_again", "revolute", "coupler.A", "crank.A"),
             ),
             // √(0.8² + 0.4² − 0.8·0.4) − 0.55, as without the second pin.

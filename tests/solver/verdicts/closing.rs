@@ -2,10 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use crate::common::mechanisms::{four_bar, slider_crank};
 use crate::verdicts::Expected::Closes;
 use crate::verdicts::mechanisms::{
-    ON_LINE, PARALLEL, across, cranked, driven_at_the_coupler, four_bar, hung, lever, linked,
-    middle_when_crossed, six_bar, slider_crank, triangle, upright,
+    ON_LINE, PARALLEL, across, cranked, driven_at_the_coupler, hung, lever, linked,
+    middle_when_crossed, six_bar, triangle, upright,
 };
 use crate::verdicts::{Case, case};
 
@@ -25,7 +26,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "a parallelogram, crossed",
             four_bar(
                 [1.0, 2.0, 1.0, 2.0],
-                60.0,
+                "60*deg",
                 ["0, 0, 1", "0, 0, -1", "0, 0, -2"],
             ),
             Closes(vec![
@@ -38,7 +39,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "a rocker whose turns are estimated",
             four_bar(
                 [1.0, 2.0, 1.0, 2.0],
-                60.0,
+                "60*deg",
                 ["0, 0, 1", "0, 0, 0", "0, 0, \"1 - 4*pi\""],
             ),
             Closes(vec![("rocker.phi", PI / 3.0 - 2.0 * TAU)]),
@@ -47,7 +48,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "estimates a thousand lengths off",
             four_bar(
                 [1.0, 2.0, 1.0, 2.0],
-                60.0,
+                "60*deg",
                 ["900, 0, 1", "500, -800, 0", "0, 1000, 1"],
             ),
             Closes(vec![("rocker.x", 2.0), ("rocker.y", 0.0)]),
@@ -59,12 +60,17 @@ pub(crate) fn cases() -> Vec<Case> {
         ),
         case(
             "a slider–crank, upright",
-            slider_crank(2.0, 0.0, 90.0, ["0, 0, 1", "0, 0, 0", "1, 0, 0"]),
+            slider_crank([1.0, 2.0], 0.0, "90*deg", ["0, 0, 1", "0, 0, 0", "1, 0, 0"]),
             Closes(vec![("slider.x", root), ("rod.phi", -PI / 6.0)]),
         ),
         case(
             "a slider–crank, its slider estimated on the left",
-            slider_crank(2.0, 0.0, 90.0, ["0, 0, 1", "0, 1, -2.5", "-1, 0, 0"]),
+            slider_crank(
+                [1.0, 2.0],
+                0.0,
+                "90*deg",
+                ["0, 0, 1", "0, 1, -2.5", "-1, 0, 0"],
+            ),
             Closes(vec![("slider.x", -root)]),
         ),
         // 3, 4, 5: the arm is upright.

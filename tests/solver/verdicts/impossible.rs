@@ -1,9 +1,10 @@
 //! Mechanisms that are proved not to close, with their gaps.
 
+use crate::common::mechanisms::slider_crank;
 use crate::verdicts::Expected::Impossible;
 use crate::verdicts::mechanisms::{
     CROSSED, ON_LINE, PARALLEL, cranked, driven_at_the_coupler, lever, linked, middle_when_crossed,
-    six_bar, slider_crank, triangle, upright,
+    six_bar, triangle, upright,
 };
 use crate::verdicts::{Case, case};
 
@@ -40,7 +41,7 @@ pub(crate) fn cases() -> Vec<Case> {
         // The tip (0, 1) is 3 below the guide, the rod is 2 long.
         case(
             "a guide out of reach",
-            slider_crank(2.0, 4.0, 90.0, ["0, 0, 1", "0, 0, 0", "1, 0, 0"]),
+            slider_crank([1.0, 2.0], 4.0, "90*deg", ["0, 0, 1", "0, 0, 0", "1, 0, 0"]),
             one("joint `guide`", 1.0),
         ),
         // The third side is between 1 and 7.

@@ -7,9 +7,8 @@ use std::sync::Arc;
 use biela::kinematics::{Curve, Path, Solver};
 use biela::mechanism::{JointKind, Mechanism, Source};
 
-use crate::common::{assembled, moved, stems};
-use crate::verdicts::mechanisms::{four_bar, slider_crank};
-use crate::verdicts::solve;
+use crate::common::mechanisms::{four_bar, slider_crank};
+use crate::common::{assembled, moved, solve, stems};
 
 /// A mechanism file as shipped.
 fn text(name: &str) -> String {
@@ -172,10 +171,10 @@ fn an_arm_of_any_size_beside_it_leaves_the_nearest_mode_the_same() {
         let estimates = [estimate(0), estimate(1), estimate(2)];
         let estimates = estimates.each_ref().map(String::as_str);
         // Origins far from the joints, so that both modes have places of their own.
-        let four_bar = four_bar([1.0, 3.0, 2.5, 3.0], 70.0, estimates)
+        let four_bar = four_bar([1.0, 3.0, 2.5, 3.0], "70*deg", estimates)
             .replace("A = [0, 0], B = [3, 0]", "A = [-1.5, 0], B = [1.5, 0]")
             .replace("O = [0, 0], B = [2.5, 0]", "O = [-2.5, 0], B = [0, 0]");
-        for text in [four_bar, slider_crank(2.0, 0.3, 70.0, estimates)] {
+        for text in [four_bar, slider_crank([1.0, 2.0], 0.3, "70*deg", estimates)] {
             let alone = solve(&text).expect("it closes");
             let bodies = alone.pose().q.len();
             for length in ["1e6", "1e3", "1e-3", "1e-7"] {

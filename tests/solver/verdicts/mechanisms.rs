@@ -1,72 +1,13 @@
 //! Texts of small mechanisms, and their geometry.
 
-use std::fmt::Write as _;
-
-/// A mechanism file: ground's markers, bodies with markers and estimates, and the rest.
-pub(crate) fn file(ground: &str, bodies: &[(&str, &str, &str)], rest: &str) -> String {
-    let mut text = format!("format = 1\nname = \"bank\"\n[ground.markers]\n{ground}\n");
-    for (name, markers, estimate) in bodies {
-        let _ = writeln!(
-            text,
-            "[bodies.{name}]\nmarkers = {{ {markers} }}\nestimate = [{estimate}]"
-        );
-    }
-    text + rest
-}
-
-/// Joints of a four-bar with crank, coupler and rocker, and a driven crank.
-const FOUR_BAR: &str = r#"
-[joints]
-O2 = { type = "revolute", markers = ["ground.O2", "crank.O"] }
-A = { type = "revolute", markers = ["crank.A", "coupler.A"] }
-B = { type = "revolute", markers = ["coupler.B", "rocker.B"] }
-O4 = { type = "revolute", markers = ["ground.O4", "rocker.O"] }
-[drivers]
-angle = { coordinate = "angle", markers = ["ground.O2", "crank.O"], start = "START*deg" }
-"#;
-
-/// A four-bar of these lengths, estimated at these angles \[deg\].
-pub(crate) fn four_bar([a, b, c, d]: [f64; 4], start: f64, estimates: [&str; 3]) -> String {
-    file(
-        &format!("O2 = [0, 0]\nO4 = [{d}, 0]"),
-        &[
-            ("crank", &format!("O = [0, 0], A = [{a}, 0]"), estimates[0]),
-            (
-                "coupler",
-                &format!("A = [0, 0], B = [{b}, 0]"),
-                estimates[1],
-            ),
-            ("rocker", &format!("O = [0, 0], B = [{c}, 0]"), estimates[2]),
-        ],
-        &FOUR_BAR.replace("START", &start.to_string()),
-    )
-}
+use crate::common::mechanisms::{file, four_bar};
 
 /// A four-bar estimated upright.
 pub(crate) fn upright(lengths: [f64; 4], start: f64) -> String {
-    four_bar(lengths, start, ["0, 0, 1", "0, 0, 0", "0, 0, 1"])
-}
-
-const SLIDER_CRANK: &str = r#"
-[joints]
-O = { type = "revolute", markers = ["ground.O", "crank.O"] }
-A = { type = "revolute", markers = ["crank.A", "rod.A"] }
-B = { type = "revolute", markers = ["rod.B", "slider.B"] }
-guide = { type = "translational", markers = ["ground.guide", "slider.B"] }
-[drivers]
-angle = { coordinate = "angle", markers = ["ground.O", "crank.O"], start = "START*deg" }
-"#;
-
-/// A slider–crank with crank 1 whose guide is `offset` above the crank's pivot.
-pub(crate) fn slider_crank(rod: f64, offset: f64, start: f64, estimates: [&str; 3]) -> String {
-    file(
-        &format!("O = [0, 0]\nguide = [0, {offset}]"),
-        &[
-            ("crank", "O = [0, 0], A = [1, 0]", estimates[0]),
-            ("rod", &format!("A = [0, 0], B = [{rod}, 0]"), estimates[1]),
-            ("slider", "B = [0, 0]", estimates[2]),
-        ],
-        &SLIDER_CRANK.replace("START", &start.to_string()),
+    four_bar(
+        lengths,
+        &format!("{start}*deg"),
+        ["0, 0, 1", "0, 0, 0", "0, 0, 1"],
     )
 }
 
@@ -158,27 +99,34 @@ angle = {{ coordinate = "angle", markers = ["coupler.B", "rocker.B"], start = "{
 /// from the middle of its coupler to the point (1.5, `height`).
 pub(crate) fn six_bar(links: [f64; 2], height: f64, estimates: [&str; 3]) -> String {
     let [e, f] = links;
-    file(
-        &format!("O2 = [0, 0]\nO4 = [3, 0]\nO6 = [1.5, {height}]"),
-        &[
-            ("crank", "O = [0, 0], A = [2, 0]", "0, 0, 1.5"),
-            (
-                "coupler",
-                "A = [0, 0], B = [3, 0], C = [1.5, 0]",
-                estimates[0],
-            ),
-            ("rocker", "O = [0, 0], B = [2, 0]", estimates[1]),
-            ("link", &format!("C = [0, 0], E = [{e}, 0]"), estimates[2]),
-            ("output", &format!("O = [0, 0], E = [{f}, 0]"), "0, 0, 0"),
-        ],
-        &FOUR_BAR.replace("START", "90").replace(
-            "[drivers]",
-            r#"C = { type = "revolute", markers = ["coupler.C", "link.C"] }
-E = { type = "revolute", markers = ["link.E", "output.E"] }
-O6 = { type = "revolute", markers = ["ground.O6", "output.O"] }
-[drivers]"#,
-        ),
+    let [coupler, rocker, link] = estimates;
+    let four_bar = four_bar(
+        [2.0, 3.0, 2.0, 3.0],
+        "90*deg",
+        ["0, 0, 1.5", coupler, rocker],
     )
+    .replace("O4 = [3, 0]", &format!("O4 = [3, 0]\nO6 = [1.5, {height}]"))
+    .replace("B = [3, 0] }", "B = [3, 0], C = [1.5, 0] }");
+    four_bar
+        + &format!(
+            r#"
+[bodies.link]
+markers = {{ C = [0, 0], E = [{e}, 0] }}
+estimate = [{link}]
+[bodies.output]
+markers = {{ O = [0, 0], E = [{f}, 0] }}
+estimate = [0, 0, 0]
+[joints.C]
+type = "revolute"
+markers = ["coupler.C", "link.C"]
+[joints.E]
+type = "revolute"
+markers = ["link.E", "output.E"]
+[joints.O6]
+type = "revolute"
+markers = ["ground.O6", "output.O"]
+"#
+        )
 }
 
 /// The mode of `six_bar`'s parallelogram that is estimated.

@@ -11,10 +11,9 @@ mod refused;
 mod singular;
 mod two_loops;
 
-use std::sync::Arc;
-
-use self::mechanisms::{linked, slider_crank, upright};
-use crate::common::{parse, straight_to};
+use self::mechanisms::{linked, upright};
+use crate::common::mechanisms::slider_crank;
+use crate::common::{solve, straight_to};
 use biela::kinematics::{Error, Fit, OpenJoint, Path, Reason, Solver, Verdict};
 use biela::mechanism::{Mechanism, Source};
 
@@ -51,14 +50,6 @@ fn case(name: &'static str, text: String, expected: Expected) -> Case {
         text,
         expected,
     }
-}
-
-/// Assembles, and returns the solver or what is wrong.
-fn solve(text: &str) -> Result<Solver, Error> {
-    let mechanism = parse(text);
-    let mut solver = Solver::new(Arc::clone(&mechanism))?;
-    solver.assemble(&Path::new(&mechanism))?;
-    Ok(solver)
 }
 
 fn coordinate(solver: &Solver, path: &str) -> f64 {
@@ -218,7 +209,7 @@ fn an_arm_of_any_size_beside_it_leaves_the_verdict_the_same() {
 #[test]
 fn the_length_with_which_it_would_close_is_told() {
     let upright = |coupler, rocker| upright([1.0, coupler, rocker, 2.0], 90.0);
-    let with_rod = |rod| slider_crank(rod, 4.0, 90.0, ["0, 0, 1", "0, 0, 0", "1, 0, 0"]);
+    let with_rod = |rod| slider_crank([1.0, rod], 4.0, "90*deg", ["0, 0, 1", "0, 0, 0", "1, 0, 0"]);
     let linked = |length| linked(length, 90.0, ["0, 0, 1", "4, 0, 1.5"]);
     // The least change of a length of the closed forms of the bank, and the mechanism with one a
     // little beyond.

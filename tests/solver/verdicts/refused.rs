@@ -1,7 +1,8 @@
 //! Files that are refused before anything is assembled.
 
+use crate::common::mechanisms::four_bar;
 use crate::verdicts::Expected::Refused;
-use crate::verdicts::mechanisms::{four_bar, linked, triangle, upright};
+use crate::verdicts::mechanisms::{linked, triangle, upright};
 use crate::verdicts::{Case, case};
 
 pub(crate) fn cases() -> Vec<Case> {
@@ -29,7 +30,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "an estimate without a value",
             four_bar(
                 [1.0, 2.0, 1.0, 2.0],
-                60.0,
+                "60*deg",
                 ["0, 0, 1", "0, 0, 0", "0, 0, \"1/(1 - 1)\""],
             ),
             Refused("`1/(1 - 1)` is not a finite number"),

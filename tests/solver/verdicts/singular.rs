@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use biela::kinematics::Reason;
 
+use crate::common::mechanisms::four_bar;
 use crate::verdicts::Expected::{GivenUp, NearlySingular, Singular};
-use crate::verdicts::mechanisms::{cranked, four_bar, linked, upright};
+use crate::verdicts::mechanisms::{cranked, linked, upright};
 use crate::verdicts::{Case, case};
 
 pub(crate) fn cases() -> Vec<Case> {
@@ -34,7 +35,11 @@ pub(crate) fn cases() -> Vec<Case> {
         ),
         case(
             "a parallelogram laid flat",
-            four_bar([1.0, 2.0, 1.0, 2.0], 0.0, ["0, 0, 0", "1, 0, 0", "2, 0, 0"]),
+            four_bar(
+                [1.0, 2.0, 1.0, 2.0],
+                "0*deg",
+                ["0, 0, 0", "1, 0, 0", "2, 0, 0"],
+            ),
             Singular,
         ),
         case(

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::mechanisms::crank;
 use crate::common::{assembled, parse, shipped, stems, straight_to};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -515,18 +516,7 @@ fn pictures_of(gif: &[u8]) -> (Vec<Vec<u8>>, f64) {
 // A crank that turns once in a second: the picture takes two, and its halves mirror each other.
 #[test]
 fn a_gif_shows_the_motion_in_its_time() {
-    let text = r#"format = 1
-name = "crank"
-[ground.markers]
-O = [0, 0]
-[bodies.crank]
-markers = { O = [0, 0], A = [0.1, 0] }
-[joints]
-O = { type = "revolute", markers = ["ground.O", "crank.O"] }
-[drivers]
-angle = { coordinate = "angle", markers = ["ground.O", "crank.O"], start = 0 }
-"#;
-    let (mut solver, mut path) = assembled(&parse(text));
+    let (mut solver, mut path) = assembled(&parse(&crank("start = 0")));
     let scene = Scene::new(&mut solver, true);
     let moments = (0..=20).map(|k| {
         let angle = std::f64::consts::TAU * f64::from(k) / 20.0;

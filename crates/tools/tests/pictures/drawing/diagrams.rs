@@ -2,6 +2,7 @@
 
 use biela_tools::drawing::{Diagram, svg};
 
+use crate::common::mechanisms::crank;
 use crate::common::{assembled, parse, shipped, stems};
 use crate::drawing::pictures::{Label, WIDTH, check_apart, check_picture};
 
@@ -159,25 +160,13 @@ fn instant_centres_far_away_are_told_in_words() {
 // without them.
 #[test]
 fn the_scale_has_the_unit_of_the_dimensions() {
-    let text = r#"format = 1
-name = "arm"
-[ground.markers]
-O = [0, 0]
-[bodies.arm]
-markers = { O = [0, 0], P = [0.5, 0] }
-[joints]
-O = { type = "revolute", markers = ["ground.O", "arm.O"] }
-[drivers]
-angle = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0.3 }
-[outputs]
-markers = ["arm.P"]
-"#;
+    let text = crank("start = 0.3") + "outputs.markers = ['crank.A']\n";
     let texts = |dimensions: bool| {
         let diagram = Diagram {
             dimensions,
             ..Diagram::default()
         };
-        let (mut solver, _) = assembled(&parse(text));
+        let (mut solver, _) = assembled(&parse(&text));
         svg::write(
             &diagram.sheet(&mut solver).expect("it is drawn"),
             640,

@@ -3,6 +3,7 @@
 use assert_cmd::Command;
 
 use crate::cli::program::{altered, biela, program, stderr, stdout};
+use crate::common::mechanisms::crank;
 
 #[test]
 fn check_describes_a_mechanism() {
@@ -73,13 +74,7 @@ fn motions_beyond_limits_are_told_as_in_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("swing.toml");
     let swing = |driver: &str, simulation: &str| {
-        let text = format!(
-            "format = 1\nname = 'swing'\n[ground.markers]\nO = [0, 0]\n[bodies.a]\n\
-             markers = {{ O = [0, 0] }}\n[joints]\n\
-             O = {{ type = 'revolute', markers = ['ground.O', 'a.O'] }}\n[drivers]\n\
-             q = {{ coordinate = 'angle', markers = ['ground.O', 'a.O'], {driver} }}\n\
-             [simulation]\n{simulation}\n"
-        );
+        let text = crank(driver) + &format!("[simulation]\n{simulation}\n");
         std::fs::write(&path, text).unwrap();
         path.to_str().unwrap()
     };
@@ -91,7 +86,8 @@ fn motions_beyond_limits_are_told_as_in_a_run() {
     assert_eq!(told.lines().count(), expected.len(), "{told}");
     for (line, (time, key)) in told.lines().zip(expected) {
         assert!(
-            line.starts_with(&format!("warning: t = {time}")) && line.contains(" s: driver `q` is"),
+            line.starts_with(&format!("warning: t = {time}"))
+                && line.contains(" s: driver `turn` is"),
             "{line}"
         );
         assert!(line.contains(&format!("beyond its `{key}` = ")), "{line}");

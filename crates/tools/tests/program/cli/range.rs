@@ -1,6 +1,7 @@
 //! `biela range`
 
 use crate::cli::program::{biela, column, stderr, stdout};
+use crate::common::mechanisms::crank;
 
 #[test]
 fn range_tells_the_limits() {
@@ -255,21 +256,13 @@ profile = { table = [[0, 0.1], [3, 0.1005], [90, 0.1005], [200, 0.1]], scale = [
 q = { coordinate = "angle", markers = ["ground.O", "cam.O"], start = 0 }
 "#;
 
-/// A lever without mass, loaded along its own angle.
-const LEVER: &str = r#"
-format = 1
-name = "lever"
-[ground.markers]
-O = [0, 0]
-[bodies.a]
-markers = { O = [0, 0] }
-[joints]
-O = { type = "revolute", markers = ["ground.O", "a.O"] }
-[drivers]
-q = { coordinate = "angle", markers = ["ground.O", "a.O"], start = 1, min = "-90*deg", max = "90*deg" }
-[forces]
-f = { coordinate = "angle", markers = ["ground.O", "a.O"], value = "LOAD" }
-"#;
+const LIMITED: &str = "start = 1, min = '-90*deg', max = '90*deg'";
+
+/// A crank without mass, loaded along its own angle.
+fn loaded(load: &str) -> String {
+    let force = "forces.f = { coordinate = 'angle', markers = ['ground.O', 'crank.O'], value = ";
+    crank(LIMITED) + &format!("{force}'{load}' }}\n")
+}
 
 /// A spring of no free length from a point above the pivot of an arm balances its weight everywhere
 /// if its stiffness times the two distances is m g l. With 1e-12 more of mass the effort is that
@@ -279,15 +272,13 @@ fn an_effort_of_rounding_is_told_as_zero() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("balance.toml");
     let balance = |mass: &str, weight: &str| {
-        let text = format!(
-            "format = 1\nname = 'balance'\n[parameters]\nweight = {weight}\n[ground.markers]\n\
-             O = [0, 0]\nS = [0, 0.3]\n[bodies.arm]\nmarkers = {{ O = [0, 0], A = [0.2, 0] }}\n\
-             center = [0.5, 0]\nmass = '{mass}'\n[joints]\n\
-             O = {{ type = 'revolute', markers = ['ground.O', 'arm.O'] }}\n[forces]\n\
-             spring = {{ coordinate = 'distance', markers = ['ground.S', 'arm.A'], \
-             value = '-position*weight*0.5/0.2/0.3' }}\n[drivers]\n\
-             q = {{ coordinate = 'angle', markers = ['ground.O', 'arm.O'], start = 0.3 }}\n"
+        let arm = format!(
+            "parameters.weight = {weight}\nground.markers.S = [0, 0.3]\n\
+             bodies.crank.center = [0.5, 0]\nbodies.crank.mass = '{mass}'\n\
+             forces.spring = {{ coordinate = 'distance', markers = ['ground.S', 'crank.A'], \
+             value = '-position*weight/0.3' }}\n"
         );
+        let text = crank("start = 0.3") + &arm;
         std::fs::write(&path, text).unwrap();
         path.to_str().unwrap()
     };
@@ -298,7 +289,7 @@ fn an_effort_of_rounding_is_told_as_zero() {
         number.to_owned()
     };
     let range = |mass, weight| effort("range", balance(mass, weight), "largest effort ");
-    let check = |mass, weight| effort("check", balance(mass, weight), "q.effort = ");
+    let check = |mass, weight| effort("check", balance(mass, weight), "turn.effort = ");
     assert_eq!(range("2", "19.62"), "0");
     assert_eq!(range("2e5", "19.62e5"), "0");
     assert_eq!(range("2e-12", "19.62e-12"), "0");
@@ -329,24 +320,24 @@ fn the_largest_effort_is_found_between_samples() {
     let expected = format!("at rest, largest effort {effort} N.m, at 88.5 deg\n");
     assert!(text.contains(&expected), "{expected}{text}");
     // A peak of 2 at 0.4 deg and one of 1 at 40.4 deg; a pole at a sample and one between two.
-    let load = |load: &str, more: &[&str]| range(&LEVER.replace("LOAD", load), more);
+    let load = |load: &str, more: &[&str]| range(&loaded(load), more);
     let bells = "-2*exp(-((position - 0.4*deg)/(1*deg))^2) - exp(-((position - 40.4*deg)/deg)^2)";
     let text = load(bells, &[]);
     assert!(
         text.contains("largest effort 2 N.m, at 0.4 deg\n"),
         "{text}"
     );
-    let text = load("1/position", &["--drive", "q = 1*deg"]);
+    let text = load("1/position", &["--drive", "turn = 1*deg"]);
     let missing = "  at rest, no forces at 0 deg: force `f` has no finite value here\n";
     for expected in ["  at rest, effort grows without bound at 0 deg\n", missing] {
         assert!(text.contains(expected), "{expected}{text}");
     }
-    let text = load("1/(position - 0.5*deg)", &["--drive", "q = 1*deg"]);
+    let text = load("1/(position - 0.5*deg)", &["--drive", "turn = 1*deg"]);
     assert!(
         text.contains("effort grows without bound at 0.5 deg\n"),
         "{text}"
     );
-    let text = load("sqrt(position)", &["--drive", "q = 1*deg"]);
+    let text = load("sqrt(position)", &["--drive", "turn = 1*deg"]);
     let expected = "largest effort -1.25331 N.m, at 90 deg\n";
     assert!(text.contains(expected), "{text}");
     let expected =
@@ -360,16 +351,15 @@ fn computed_measures_have_their_range() {
     let [file, csv, plot] =
         ["lever.toml", "range.csv", "range.svg"].map(|name| folder.path().join(name));
     let measures = "[measures]\n\
-                    rise = { value = \"sin(q.position)\", unit = \"m\" }\n\
-                    reach = { value = \"-(a.omega/q.velocity)*cos(2*(q.position - 0.5*deg))\" }\n\
-                    power = { value = \"2*q.velocity\", unit = \"W\" }\n\
-                    pole = { value = \"1/(q.position - 10*deg)\" }\n\
-                    root = { value = \"sqrt(q.position - 1)\" }\n";
-    let (unloaded, _) = LEVER.split_once("[forces]").unwrap();
-    std::fs::write(&file, format!("{unloaded}{measures}")).unwrap();
+                    rise = { value = \"sin(turn.position)\", unit = \"m\" }\n\
+                    reach = { value = \"-(crank.omega/turn.velocity)*cos(2*(turn.position - 0.5*deg))\" }\n\
+                    power = { value = \"2*turn.velocity\", unit = \"W\" }\n\
+                    pole = { value = \"1/(turn.position - 10*deg)\" }\n\
+                    root = { value = \"sqrt(turn.position - 1)\" }\n";
+    std::fs::write(&file, crank(LIMITED) + measures).unwrap();
     let [file, csv, plot] = [&file, &csv, &plot].map(|path| path.to_str().unwrap());
     let range = |more: &[&str]| {
-        let arguments = [&["range", file, "--drive", "q = 60*deg"][..], more].concat();
+        let arguments = [&["range", file, "--drive", "turn = 60*deg"][..], more].concat();
         stdout(&biela(&arguments).success())
     };
     let text = range(&["--csv", csv, "--plot", plot]);
@@ -384,7 +374,7 @@ fn computed_measures_have_their_range() {
         assert!(text.contains(expected), "{expected}{text}");
     }
     let table = std::fs::read_to_string(csv).unwrap();
-    let angles = column(&table, "q.position");
+    let angles = column(&table, "turn.position");
     for (angle, rise) in angles.iter().zip(column(&table, "rise")) {
         assert!((rise - angle.sin()).abs() < 1e-12);
     }
@@ -409,11 +399,7 @@ fn computed_measures_have_their_range() {
 fn range_tells_a_stop_on_one_side() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("lid.toml");
-    let text = "format = 1\nname = 'lid'\nground.markers = { O = [0, 0] }\n\
-        bodies.lid.markers = { O = [0, 0] }\n[joints]\n\
-        O = { type = 'revolute', markers = ['ground.O', 'lid.O'] }\n[drivers]\n\
-        turn = { coordinate = 'angle', markers = ['ground.O', 'lid.O'], start = '20*deg' }\n[stops]\n\
-        closed = { of = 'turn', min = '-3*deg' }\n";
+    let text = crank("start = '20*deg'") + "stops.closed = { of = 'turn', min = '-3*deg' }\n";
     std::fs::write(&file, text).unwrap();
     let told = stdout(&biela(&["range", file.to_str().unwrap()]).success());
     for wanted in [

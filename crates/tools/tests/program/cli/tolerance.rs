@@ -1,6 +1,7 @@
 //! `biela tolerance`
 
 use crate::cli::program::{biela, stderr, stdout};
+use crate::common::mechanisms::crank;
 
 /// Two links in line with their drivers: P = a (cos u, sin u) + b (cos v, sin v).
 const ARM: &str = r#"
@@ -132,14 +133,10 @@ fn a_deviation_without_a_derivative_is_refused() {
 /// A point mass m at the end of an arm that holds it: the effort is m g a cos u.
 #[test]
 fn forces_have_tolerances() {
-    let text = "format = 1\nname = 'arm'\n\
-        [parameters]\na = { value = 0.3, unit = 'm', tolerance = '0.2*mm' }\n\
-        [ground.markers]\nO = [0, 0]\n\
-        [bodies.arm]\nmarkers = { O = [0, 0] }\nmass = 2\ncenter = ['a', 0]\n\
-        [joints]\nO = { type = 'revolute', markers = ['ground.O', 'arm.O'] }\n\
-        [drivers]\nu = { coordinate = 'angle', markers = ['ground.O', 'arm.O'], start = 0 }\n\
-        [simulation]\ngravity = [0, -10]\n";
-    let row = row_of(text, "u.effort", &["--stop", "0"]);
+    let point = "parameters.a = { value = 0.3, unit = 'm', tolerance = '0.2*mm' }\n\
+        bodies.crank.mass = 2\nbodies.crank.center = ['a', 0]\nsimulation.gravity = [0, -10]\n";
+    let text = crank("start = 0") + point;
+    let row = row_of(&text, "turn.effort", &["--stop", "0"]);
     let worst: f64 = row[1].parse().unwrap();
     assert!(
         (worst / (2.0 * 10.0 * 0.2e-3) - 1.0).abs() < 5.1e-4,
