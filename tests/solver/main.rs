@@ -27,7 +27,6 @@ mod redundancy;
 mod rope;
 mod sensitivity;
 mod singular;
-mod singular_kinds;
 mod start;
 mod stepping;
 mod stops;

@@ -1,8 +1,6 @@
 //! Positions that are crossed, dead points, and refusals by name, on mechanisms of all kinds
 //! of blocks.
 
-mod accuracy;
-
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::common::{assembled, parse, straight_to};
