@@ -50,6 +50,8 @@ mod instantiation;
 mod intermediate;
 mod message;
 mod saved_state;
+#[cfg(test)]
+mod tests;
 
 /// The model whose C interface this is.
 type Exported = super::MechanismModel;
