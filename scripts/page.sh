@@ -6,6 +6,8 @@
 #   scripts/page.sh page                builds that of pages
 #   scripts/page.sh studio              builds that of the studio
 #   scripts/page.sh page --current      prints its path if it was built from these sources
+#   scripts/page.sh studio --smoke      builds that of the studio for tests: slower, and built several times
+#                                       faster, into target/smoke/studio.wasm
 #
 # Needs the target wasm32-unknown-unknown of Rust, which rustup adds. Debian's packages rustc-web,
 # cargo-web and rust-web-src, with the linker of rustup's toolchain, take its place.
@@ -17,7 +19,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 TARGET=wasm32-unknown-unknown
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
 OUT=$PWD/target/runtimes
-name=${1:-page}
+name=${1:-page} profile=page
+if [ "${2:-}" = --smoke ]; then profile=smoke OUT=$PWD/target/smoke; fi
 # Usual size, packed, at most [bytes]: each page and each FMU holds the solver of pages.
 case $name in
 page) usual_size=1200000 made_of='crates/tools/src crates/tools/Cargo.toml crates/page' ;;
@@ -65,7 +68,7 @@ built_from=$(sources)
 flags="--remap-path-prefix=$PWD=. --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
 # With half the usual threshold for inlining the solver is an eighth smaller, and not slower.
 flags="$flags -Cllvm-args=-inline-threshold=100"
-arguments=(build --locked --package "biela-$name" --profile page --target "$TARGET")
+arguments=(build --locked --package "biela-$name" --profile "$profile" --target "$TARGET")
 say "building the solver of the $name; the first time this takes some minutes"
 if has_target rustc; then
     RUSTFLAGS="$flags" cargo "${arguments[@]}"
@@ -78,9 +81,9 @@ else
         /usr/bin/cargo "${arguments[@]}" -Zbuild-std=std,panic_abort
 fi
 mkdir -p "$OUT"
-cp "$CARGO_TARGET_DIR/$TARGET/page/biela_$name.wasm" "$OUT/$name.wasm.new"
+cp "$CARGO_TARGET_DIR/$TARGET/$profile/biela_$name.wasm" "$OUT/$name.wasm.new"
 packed=$(gzip -9 -c "$OUT/$name.wasm.new" | wc -c)
 say "$name.wasm: $(wc -c <"$OUT/$name.wasm.new") bytes, $packed packed"
-[ "$packed" -le "$usual_size" ] || say "note: it usually has at most $usual_size bytes, packed"
+[ $profile = smoke ] || [ "$packed" -le "$usual_size" ] || say "note: it usually has at most $usual_size bytes, packed"
 mv "$OUT/$name.wasm.new" "$OUT/$name.wasm"
 printf '%s\n' "$built_from" >"$OUT/.$name-sources"

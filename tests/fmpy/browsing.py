@@ -63,10 +63,14 @@ const inside = (part) => {
 </script>"""
 
 
-def browser():
+def find_browser():
+    """Returns the path of a Chromium or Chrome, None if there is none."""
     named = os.environ.get("BIELA_CHROMIUM")
-    found = [named] if named else filter(None, map(shutil.which, BROWSERS))
-    found = next(iter(found), None)
+    return named or next(filter(None, map(shutil.which, BROWSERS)), None)
+
+
+def browser():
+    found = find_browser()
     if found is None:
         pytest.skip("no Chromium or Chrome on PATH: pages are not tried in a browser")
     return found

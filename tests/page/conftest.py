@@ -1,5 +1,7 @@
-"""What all tests of pages need: the program with the solver of `make page`."""
+"""What all tests of pages need: the program with the solver of `make page`, or with the one that
+BIELA_PAGE_SOLVER names."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -15,7 +17,7 @@ from harness import ROOT, program  # noqa: E402
 @pytest.fixture(scope="session")
 def solver() -> Path:
     """The solver for pages."""
-    path = ROOT / "target" / "runtimes" / "page.wasm"
+    path = ROOT / os.environ.get("BIELA_PAGE_SOLVER", "target/runtimes/page.wasm")
     if not path.is_file():
         pytest.exit("run `make page` first", returncode=2)
     return path

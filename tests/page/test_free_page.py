@@ -27,6 +27,7 @@ const spring = () => live.picture.spring.getAttribute("d");
 """
 
 
+@pytest.mark.smoke
 def test_a_pendulum_swings_and_keeps_its_energy(page_of, tmp_path):
     rows, before, time, message = look(
         tmp_path,

@@ -27,6 +27,7 @@ def rocker_angle(crank):
     return math.atan2(by, bx - BASE)
 
 
+@pytest.mark.smoke
 def test_dragging_the_crank_follows_the_closed_form(page_of, tmp_path):
     # The pointer is off the crank's circle: the crank points at it, seen from its pivot.
     ends = [math.radians(angle) for angle in (100, 170, 260, 20)]
@@ -125,6 +126,7 @@ def test_a_geometry_that_does_not_close_is_refused(page_of, tmp_path):
     assert crank == COUPLER
 
 
+@pytest.mark.smoke
 def test_a_parameter_by_its_field(page_of, tmp_path):
     base, phi, undone = look(
         tmp_path,

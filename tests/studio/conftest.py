@@ -1,6 +1,7 @@
-"""What all tests of the studio need: a browser with the studio of `make studio`, moved by real mouse
-and keyboard events."""
+"""What all tests of the studio need: a browser with the studio of `make studio`, or with the one in the
+folder that BIELA_STUDIO names, moved by real mouse and keyboard events."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -27,7 +28,7 @@ FLAGS = [
 @pytest.fixture(scope="session")
 def folder() -> Path:
     """The studio's static folder."""
-    folder = ROOT / "target" / "studio"
+    folder = ROOT / os.environ.get("BIELA_STUDIO", "target/studio")
     if not (folder / "index.html").is_file():
         pytest.exit("run `make studio` first", returncode=2)
     return folder

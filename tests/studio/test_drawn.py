@@ -168,6 +168,7 @@ def test_a_gear_pair_with_a_crank(sheet):
     assert abs(turned + 3 * ratio) < EXACT
 
 
+@pytest.mark.smoke
 def test_undo_goes_back_to_the_first_letters_and_redo_to_the_last(sheet):
     first = sheet.text
     test_a_four_bar(sheet)

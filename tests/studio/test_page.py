@@ -25,6 +25,7 @@ def slider_crank(sheet):
     sheet.click((0, 0))
 
 
+@pytest.mark.smoke
 def test_the_fmu_has_the_bytes_of_the_program(sheet, tmp_path):
     slider_crank(sheet)
     for fmi in ("2", "3"):
