@@ -190,20 +190,27 @@ impl Equations {
     }
 
     /// Solves accelerations and passive forces at the solver's pose for the rates and inputs of a
-    /// solution.
+    /// solution; for the inputs at the accepted point where the solution seeks no forces.
     pub(super) fn solve_at(
         &mut self,
         solver: &mut Solver,
         solution: &mut Solution,
     ) -> Result<(), Error> {
         self.point.drivers.copy_from_slice(&solution.driver_rates);
-        self.point.loads.copy_from_slice(&solution.loads);
+        let seeks_forces = solution.forces().is_some();
+        let loads = match seeks_forces {
+            true => &solution.loads,
+            false => &self.accepted.loads,
+        };
+        self.point.loads.copy_from_slice(loads);
         self.solve(solver)?;
         for freedom in &self.freedoms {
             let index = freedom.index();
             solution.driver_rates[index].derivatives[1] = self.point.drivers[index].second();
         }
-        solution.loads.copy_from_slice(&self.point.loads);
+        if seeks_forces {
+            solution.loads.copy_from_slice(&self.point.loads);
+        }
         Ok(())
     }
 

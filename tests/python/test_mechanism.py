@@ -201,7 +201,7 @@ def test_the_program_is_the_module():
     command = [sys.executable, "-c", "import sys; sys.path.insert(0, sys.argv.pop(1)); "
                "import biela.__main__ as m; assert 'numpy' not in sys.modules; sys.exit(m.main())"]
     run = lambda *arguments: subprocess.run(
-        [*command, ROOT / "python", *arguments], capture_output=True, text=True
+        [*command, ROOT / "crates/python", *arguments], capture_output=True, text=True
     )
     assert run("--version").stdout.strip() == f"biela {biela.__version__}"
     assert run("check", "none.toml").returncode == 2

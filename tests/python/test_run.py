@@ -92,7 +92,7 @@ def test_a_run_has_the_numbers_of_the_program(mechanism, name):
             rate = 0.3 if driver.unit == "rad" else 0.1 * driver.start
             motions[driver.name] = f"{driver.start!r} + {rate!r}*t"
             command += ["--drive", f"{driver.name} = {motions[driver.name]}"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "crates/python")}
     ran = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     rows = list(csv.reader(io.StringIO(ran.stdout)))
     written = np.array(rows[1:], dtype=float)

@@ -108,7 +108,7 @@ def test_the_number_of_cores_has_no_effect(tmp_path):
     outputs = set()
     for threads in ("1", "3"):
         environment = {**os.environ, "RAYON_NUM_THREADS": threads, "PYTHONHASHSEED": "0"}
-        command = [sys.executable, "-c", code, ROOT / "python", ROOT / "mechanisms/four_bar.toml"]
+        command = [sys.executable, "-c", code, ROOT / "crates/python", ROOT / "mechanisms/four_bar.toml"]
         ran = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
         outputs.add(ran.stdout)
     assert len(outputs) == 1

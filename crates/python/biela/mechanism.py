@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 import json
-import operator
 import os
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from decimal import Decimal
 from pathlib import Path
-from typing import Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _biela
+from .arguments import (
+    Drive,
+    Parameters,
+    count_of,
+    given_values,
+    is_timeless,
+    joined,
+    mapping,
+    motions_of,
+    names_of,
+    numbers,
+    start_of,
+)
 from .errors import (
     Diagnostic,
     FileError,
@@ -27,7 +37,6 @@ from .errors import (
     diagnostics,
 )
 from .optional import needed
-from .rates import differentiate
 from .results import (
     ChangePoint,
     Drawing,
@@ -43,14 +52,6 @@ from .results import (
     places,
 )
 
-Drive = Mapping[str, Any]
-"""Motions by the names of drivers, and of freedoms that are to be driven, and sizes of forces by
-their names, such as `motor.effort`: an expression in `t`, such as `"60*deg + 2*pi*t"`; positions; or
-a tuple of positions, velocities and accelerations. Numbers stand for constant arrays."""
-Parameters = Mapping[str, Union[float, str]]
-"""Values by the parameters' names: numbers in SI units, or expressions such as `"120*mm"`."""
-
-TURN = 2 * np.pi
 CHUNKS = 100
 """Number of parts of a long sweep, after each of which the progress is shown."""
 
@@ -226,24 +227,26 @@ class Mechanism:
         >>> print(result["rocker.phi"].round(6))
         [2.143697 2.803644 2.143697]
         """
-        if stop not in ("raise", "keep"):
+        if not isinstance(stop, str) or stop not in ("raise", "keep"):
             raise UsageError(f"stop is {stop!r}; expected 'raise' or 'keep'")
-        drive = _joined(drive, inputs)
+        drive = joined(drive, inputs)
         motions = self._motions(t, drive)
         names, units, indices = self._chosen(variables)
-        if gradient == "all":
+        if isinstance(gradient, str) and gradient == "all":
             gradient = [name for name, parameter in self.parameters.items() if not parameter.derived]
-        by = [gradient] if isinstance(gradient, str) else list(gradient)
-        raw = self._inner.run(motions, _given(parameters), indices, by)
+        by = names_of("gradient", gradient)
+        arguments = motions, given_values(parameters), indices, by
+        raw = self._inner.run(*arguments)
         rows = raw.rows
         result = Result(
             raw,
+            (self, *arguments),
             np.asarray(motions[0])[:rows],
-            not _timeless(t, drive),
+            not is_timeless(t, drive),
             dict(zip(names, units)),
-            raw.values().reshape(rows, len(names)),
+            raw.take_values().reshape(rows, len(names)),
             by,
-            raw.gradient().reshape(rows, len(by), len(names)),
+            raw.take_gradient().reshape(rows, len(by), len(names)),
             self._moving(motions[1]),
         )
         for notice in raw.notices:
@@ -279,13 +282,14 @@ class Mechanism:
         >>> sweep.ok
         array([ True,  True, False])
         """
-        drive = _joined(drive, inputs)
+        drive = joined(drive, inputs)
         motions = self._motions(t, drive)
         names, units, indices = self._chosen(variables)
         if not names:
             raise UsageError("variables: no variable is named")
+        parameters = mapping("parameters", parameters)
         fixed = {n: v for n, v in parameters.items() if isinstance(v, str)}
-        arrays = {n: _numbers("parameters", v, n) for n, v in parameters.items() if n not in fixed}
+        arrays = {n: numbers("parameters", v, n) for n, v in parameters.items() if n not in fixed}
         try:
             series = dict(zip(arrays, np.broadcast_arrays(*arrays.values())))
         except ValueError:
@@ -299,7 +303,8 @@ class Mechanism:
         reasons: dict[int, str] = {}
         bar = _progress_bar(count) if progress else None
         size = max(1, -(-count // CHUNKS)) if bar is not None else max(1, count)
-        for first in range(0, count, size):
+        # Without a variant the names are checked all the same.
+        for first in range(0, max(1, count), size):
             part = slice(first, min(first + size, count))
             raw = self._inner.sweep(
                 motions,
@@ -318,7 +323,7 @@ class Mechanism:
         known = self.parameters
         return Sweep(
             np.asarray(motions[0]),
-            not _timeless(t, drive),
+            not is_timeless(t, drive),
             dict(zip(names, units)),
             series,
             {name: known[name].unit for name in series},
@@ -336,7 +341,7 @@ class Mechanism:
         >>> str(four_bar.range("crank_angle").upper)
         'no limit'
         """
-        found = self._inner.range(driver, self._start(drive), _given(parameters))
+        found = self._inner.range(driver, self._start(drive), given_values(parameters))
         lower, upper, crossings, values, transmission, rcond, poses, measures, extremes = found
         return Range(
             driver,
@@ -360,7 +365,7 @@ class Mechanism:
         >>> len(four_bar.modes().others)
         1
         """
-        others, complete = self._inner.modes(self._start(drive), _given(parameters))
+        others, complete = self._inner.modes(self._start(drive), given_values(parameters))
         pose = lambda q: dict(zip(self.bodies, np.reshape(q, (-1, 3))))
         return Modes(tuple(Mode(pose(q), rcond) for q, rcond in others), complete)
 
@@ -384,7 +389,7 @@ class Mechanism:
         """
         names, _, indices = self._chosen(variables)
         drivers, q, states, inputs, matrices, held = self._inner.linearize(
-            self._start(drive), _given(parameters), indices, balance
+            self._start(drive), given_values(parameters), indices, balance
         )
         for _, _, text in held:
             notice = f"{text}: what is held does not move in these equations"
@@ -420,9 +425,10 @@ class Mechanism:
         `instant_centres` the instant centre of each body and ground, `forces` arrows for what joints
         and drivers exert, and for springs, dampers and loads.
         """
-        parameters = _given(parameters)
+        parameters = given_values(parameters)
         start = self._start(drive)
-        options = (traces, _count("poses", poses), driver, dimensions, instant_centres, forces)
+        width = None if width is None else count_of("width", width, 1)
+        options = (traces, count_of("poses", poses), driver, dimensions, instant_centres, forces)
         return Drawing(self._inner.draw(start, parameters, width, transparent, options))
 
     def changed(self, parameters: Parameters | None = None, drive: Drive | None = None) -> Mechanism:
@@ -435,7 +441,7 @@ class Mechanism:
         >>> print(longer.check().poses["rocker"].round(4))
         [0.42   0.     2.1897]
         """
-        given = _given(parameters)
+        given = given_values(parameters)
         text = self._inner.edited(self._start(drive), given, None)
         return _reread(text, self._path, self._inner.has_tables)
 
@@ -447,8 +453,8 @@ class Mechanism:
         >>> bool(np.allclose(mirrored.check().poses["rocker"], other.poses["rocker"]))
         True
         """
-        estimates = np.concatenate([mode.poses[body] for body in self.bodies])
-        text = self._inner.edited(self._start(None), [], estimates.tolist())
+        estimates = [_pose_of(mode, body) for body in self.bodies]
+        text = self._inner.edited(self._start(None), [], np.concatenate(estimates).tolist())
         return _reread(text, self._path, self._inner.has_tables)
 
     def write(self, path: str | os.PathLike) -> Path:
@@ -473,9 +479,11 @@ class Mechanism:
         `platforms` narrows the FMU to some of those of `biela platforms`; `runtime` is a folder of
         runtime libraries that replace those of this package.
         """
+        if str(fmi) not in ("2", "3"):
+            raise UsageError(f"fmi is {fmi!r}; expected 2 or 3")
         path = Path(path) if path is not None else Path(f"{self.name}.fmu")
         folder = os.fspath(runtime) if runtime is not None else None
-        names = [platforms] if isinstance(platforms, str) else list(platforms)
+        names = names_of("platforms", platforms)
         path.write_bytes(bytes(self._inner.fmu(str(fmi), terminals, folder, names)))
         return path
 
@@ -485,58 +493,17 @@ class Mechanism:
         if wanted is None:
             indices = list(range(len(columns)))
         else:
-            indices = places([name for name, _ in columns], wanted)
+            indices = places([name for name, _ in columns], names_of("variables", wanted))
         return [columns[i][0] for i in indices], [columns[i][1] for i in indices], indices
 
-    def _start(self, drive: Drive | None) -> tuple[list[float], list]:
+    def _start(self, drive: Drive | None) -> tuple[NDArray, list]:
         """Returns the motions at the file's start time, where drivers have single values."""
-        start = self._inner.simulation[0]
-        constant = {}
-        for name, value in (drive or {}).items():
-            if not isinstance(value, str):
-                number = _numbers("drive", value, name)
-                if number.ndim:
-                    raise UsageError(f"drive: expected one number as `{name}`; found {value!r}")
-                value = (number, 0.0, 0.0)
-            constant[name] = value
-        return self._motions([start], constant)
+        return self._motions(self._inner.simulation[:1], start_of(drive))
 
-    def _motions(self, t: ArrayLike | None, drive: Drive | None) -> tuple[list[float], list]:
+    def _motions(self, t: ArrayLike | None, drive: Drive | None) -> tuple[NDArray, list]:
         """Returns times and motions of drivers as the compiled module takes them."""
-        drive = dict(drive or {})
-        arrays = {name: value for name, value in drive.items() if not isinstance(value, str)}
-        orders = {name: _orders(name, value) for name, value in arrays.items()}
-        lengths = {len(order) for each in orders.values() for order in each if order.ndim}
-        if len(lengths) > 1:
-            counts = ", ".join(map(str, sorted(lengths)))
-            raise UsageError(f"drive: the arrays have different lengths: {counts}")
-        timeless = _timeless(t, drive)
-        if t is not None:
-            times = np.atleast_1d(_numbers("t", t))
-            if times.ndim != 1:
-                raise UsageError(f"t has {times.ndim} dimensions; expected an array of times")
-        elif timeless:
-            times = np.full(lengths.pop() if lengths else 1, self._inner.simulation[0])
-        else:
-            start, stop, step = self._inner.simulation
-            # A last step shorter than this part of the others is rounding.
-            steps = max(0, int(np.ceil((stop - start) / step - 1e-9)))
-            times = np.minimum(_as_written(start, step, steps), stop)
-        drivers = self.drivers
-        motions: list = []
-        for name, value in drive.items():
-            if isinstance(value, str):
-                motions.append((name, value))
-                continue
-            given = orders[name]
-            full = [np.broadcast_to(order, times.shape) if not order.ndim else order for order in given]
-            if name in drivers and drivers[name].wrapped:
-                # The first value is on the turn nearest the start value, as in the FMU.
-                start = drivers[name].start
-                full[0] = np.unwrap(np.append(start, full[0]), period=TURN)[1:]
-            full += self._missing_rates(times, full, constant=not given[0].ndim, timeless=timeless)
-            motions.append((name, [np.ascontiguousarray(order) for order in full]))
-        return times, motions
+        wrapped = {d.name: d.start for d in self.drivers.values() if d.wrapped and d.start is not None}
+        return motions_of(t, mapping("drive", drive), self._inner.simulation, wrapped)
 
     def _moving(self, motions: list) -> tuple[str, str, NDArray] | None:
         """Returns name, unit and values of the driver whose values change, if it is one."""
@@ -550,90 +517,15 @@ class Mechanism:
         name, values = changing[0]
         return name, self.variables.get(f"{name}.position", ""), values
 
-    def _missing_rates(
-        self, times: NDArray, given: list[NDArray], constant: bool, timeless: bool
-    ) -> list[NDArray]:
-        """Returns the rates that are not given."""
-        missing = 3 - len(given)
-        # Without time nothing moves: velocities are zero unless given.
-        if not missing or constant or timeless or len(given[-1]) != len(times):
-            return [np.zeros(len(times))] * missing
-        if np.any(np.diff(times) <= 0):
-            raise UsageError("drive: samples at equal times cannot be differentiated; give the rates")
-        velocity, acceleration = differentiate(times, given[0])
-        if missing == 2:
-            return [velocity, acceleration]
-        return [differentiate(times, given[1])[0]]
 
-
-def _joined(drive: Drive | None, inputs: Drive | None) -> Drive:
-    """Returns the entries of both."""
-    twice = set(drive or ()) & set(inputs or ())
-    if twice:
-        raise UsageError(f"inputs: `{min(twice)}` is in `drive` too")
-    return {**(drive or {}), **(inputs or {})}
-
-
-def _timeless(t: ArrayLike | None, drive: Drive | None) -> bool:
-    """Whether a run has poses without times: values of drivers, and no times for them."""
-    return t is None and any(not isinstance(value, str) for value in (drive or {}).values())
-
-
-def _given(parameters: Parameters | None) -> list[tuple[str, float | str]]:
-    """Returns the parameters' names and values."""
-    given: list[tuple[str, float | str]] = []
-    for name, value in (parameters or {}).items():
-        try:
-            given.append((name, value if isinstance(value, str) else float(value)))
-        except (TypeError, ValueError):
-            raise UsageError(
-                f"parameters: `{name}` is no number; expected one or an expression such as "
-                "'120*mm'; `sweep` takes arrays"
-            ) from None
-    return given
-
-
-def _as_written(start: float, step: float, steps: int) -> NDArray:
-    """Returns start + i·step as decimal numbers: 0.7 for seven steps of 0.1, not 0.7000000000000001."""
-    times = start + step * np.arange(steps + 1)
-    decimals = max(-int(Decimal(repr(number)).as_tuple().exponent) for number in (start, step))
-    if decimals > 0 and np.max(np.abs(times)) * 10.0**decimals < 2.0**53:
-        times = np.round(times, decimals)
-    return times
-
-
-def _numbers(argument: str, value: Any, name: str | None = None) -> NDArray:
-    """Returns the numbers of an argument, or of its part `name`. Text of digits is no number."""
-    try:
-        return (np.asarray(value) * 1.0).astype(float)
-    except (TypeError, ValueError):
-        part = f" as `{name}`" if name else ""
-        raise UsageError(f"{argument}: expected numbers{part}; found {value!r}") from None
-
-
-def _count(name: str, value: int, least: int = 0) -> int:
-    """Returns a count, a whole number that is not too small."""
-    try:
-        count = operator.index(value)
-    except TypeError:
-        count = least - 1
-    if count < least:
-        raise UsageError(f"{name}: expected a whole number, at least {least}; found {value!r}")
-    return count
-
-
-def _orders(name: str, value: Any) -> list[NDArray]:
-    """Returns position and the given rates of a driver as arrays."""
-    parts = value if isinstance(value, tuple) else (value,)
-    if not 1 <= len(parts) <= 3:
-        raise UsageError(
-            f"drive: `{name}` is a tuple of {len(parts)}; "
-            "expected (position, velocity, acceleration)"
-        )
-    orders = [_numbers("drive", part, name) for part in parts]
-    if any(order.ndim > 1 for order in orders):
-        raise UsageError(f"drive: `{name}` has several dimensions; expected one value per time")
-    return orders
+def _pose_of(mode: Mode, body: str) -> NDArray:
+    """Returns x, y and phi of a body."""
+    if body not in mapping("posed", getattr(mode, "poses", mode)):
+        raise UsageError(f"posed: the mode has no pose of body `{body}`")
+    pose = numbers("posed", mode.poses[body], body)
+    if pose.shape != (3,) or not np.isfinite(pose).all():
+        raise UsageError(f"posed: expected three finite numbers as `{body}`; found {mode.poses[body]!r}")
+    return pose
 
 
 def _progress_bar(count: int):

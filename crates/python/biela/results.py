@@ -46,8 +46,9 @@ class Result(Mapping):
     Values are in SI units; `units` tells which.
     """
 
-    def __init__(self, raw, t, timed, units, values, by, gradient, moving):
+    def __init__(self, raw, run, t, timed, units, values, by, gradient, moving):
         self._raw = raw
+        self._run = run
         self.t: NDArray = t
         """Times [s]; those of the start for poses without times."""
         self.timed: bool = timed
@@ -129,12 +130,23 @@ class Result(Mapping):
 
         `forces` adds arrows for what joints and drivers exert, and for springs, dampers and loads.
         """
-        if forces and not self._raw.has_forces:
+        raw = self._film()
+        if forces and not raw.has_forces:
             raise UsageError(
                 "forces: this run has none; they are among the variables of mechanisms with masses "
                 "or `[forces]`"
             )
-        return self._raw.page(forces)
+        return raw.page(forces)
+
+    def _film(self) -> _biela.Run:
+        """Returns the run with its poses; in another process the same run is made once more."""
+        if self._raw is None:
+            mechanism, *arguments = self._run
+            self._raw = mechanism._inner.run(*arguments)
+        return self._raw
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_raw": None}
 
     def _repr_html_(self) -> str:
         page = html.escape(self.to_html(), quote=True)

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _biela
+from .arguments import Drive, count_of, mapping, names_of, numbers, orders_of
 from .attempt import Attempt, Limits
 from .errors import AssemblyError, UsageError
-from .mechanism import Drive, Mechanism, _count, _numbers, _orders, _reread
+from .mechanism import Mechanism, _reread
 
 METHODS = ("dogbox", "trf")
 """SciPy's methods for bounds, which random starts and changes use in turn: `dogbox` goes along the
@@ -54,14 +55,14 @@ class Target:
 
     def arrays(self) -> tuple[list[str], NDArray]:
         """Returns the names, and the values by name, then by pose."""
-        names = list(self.values)
-        arrays = [np.atleast_1d(_numbers("target", v, n)) for n, v in self.values.items()]
+        names = list(mapping("target", self.values))
+        arrays = [np.atleast_1d(numbers("target", v, n)) for n, v in self.values.items()]
         if not names or len({array.shape for array in arrays}) != 1 or arrays[0].ndim != 1:
             shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(names, arrays)) or "none"
             raise UsageError(f"target: expected arrays of one length; found {shapes}")
         if not arrays[0].size or not np.isfinite(arrays).all():
             raise UsageError(f"target: expected finite values of `{names[0]}` at one pose or more")
-        weight = _numbers("target", self.weight, "weight")
+        weight = numbers("target", self.weight, "weight")
         if weight.ndim or not np.isfinite(weight):
             raise UsageError(f"target: expected a finite number as `weight`; found {self.weight!r}")
         return names, np.array(arrays)
@@ -80,7 +81,7 @@ def points(
     >>> points("coupler.P", [[3, 3], [2.759, 3.363]], free="crank_angle").values["coupler.P.y"]
     array([3.   , 3.363])
     """
-    xy = _numbers("points", xy, marker)
+    xy = numbers("points", xy, marker)
     if xy.ndim != 2 or xy.shape[1] != 2:
         raise UsageError(f"points: expected rows of x and y; found an array of shape {xy.shape}")
     x, y = xy.T
@@ -149,13 +150,13 @@ def fit(
     >>> round(found.parameters["crank_length"], 9), round(found.parameters["rocker_length"], 9)
     (0.11, 0.29)
     """
-    starts, samples = _count("starts", starts, 1), _count("samples", samples)
-    variations, seed = _count("variations", variations), _count("seed", seed)
+    starts, samples = count_of("starts", starts, 1), count_of("samples", samples)
+    variations, seed = count_of("variations", variations), count_of("seed", seed)
     for name, value in {"tolerance": tolerance, "stop_at": stop_at}.items():
-        number = _numbers("fit", value, name)
+        number = numbers("fit", value, name)
         if number.ndim or not np.isfinite(number):
             raise UsageError(f"fit: expected a finite number as `{name}`; found {value!r}")
-    problem = Problem(mechanism, targets, free, bounds or {}, turns, tolerance, stop_at)
+    problem = Problem(mechanism, targets, free, mapping("bounds", bounds), turns, tolerance, stop_at)
     random = np.random.default_rng(seed)
     attempts = problem.attempts(starts, samples, random)
     if starts > 1:
@@ -199,7 +200,7 @@ def _limits(name: str, ends: tuple[float | None, float | None]) -> tuple[float, 
         low, high = ends
         low = -np.inf if low is None else float(low)
         high = np.inf if high is None else float(high)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         low, high = np.nan, np.nan
     if not low <= high:
         raise UsageError(
@@ -229,7 +230,10 @@ class Problem:
         self.targets = [targets] if isinstance(targets, Target) else list(targets)
         if not self.targets:
             raise UsageError("targets: there are none")
-        self.free = list(free)
+        for target in self.targets:
+            if not isinstance(target, Target):
+                raise UsageError(f"targets: expected instances of `Target`; found {target!r}")
+        self.free = names_of("free", free)
         known = mechanism.parameters
         for name in [*self.free, *bounds]:
             if name not in known:
@@ -282,7 +286,7 @@ class Problem:
     def drive(self) -> Drive:
         """Returns the motions of the drivers through the poses of all targets. Free values are
         those at which the search for them begins."""
-        names = {name for target in self.targets for name in target.drive}
+        names = {name for target in self.targets for name in mapping("target", target.drive)}
         names |= {target.free for target in self.targets if target.free is not None}
         drive = {}
         for name in sorted(names):
@@ -291,11 +295,11 @@ class Problem:
             for target, poses in zip(self.targets, self.poses):
                 if target.free == name:
                     # With unit velocity, velocities are derivatives by the driver's value.
-                    given = _orders(name, (start or 0.0, 1.0))
+                    given = orders_of(name, (start or 0.0, 1.0))
                 elif name in target.drive:
-                    given = _orders(name, target.drive[name])
+                    given = orders_of(name, target.drive[name])
                 elif start is not None:
-                    given = _orders(name, start)
+                    given = orders_of(name, start)
                 else:
                     raise UsageError(
                         f"target: driver `{name}` has a prescribed motion; "

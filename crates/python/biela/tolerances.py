@@ -9,8 +9,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import Drive, Parameters, count_of, given_values, mapping
 from .errors import UsageError
-from .mechanism import Drive, Mechanism, Parameters, _count, _given
+from .mechanism import Mechanism
 from .optional import needed
 from .results import Result, Sweep
 
@@ -118,7 +119,7 @@ def tolerance(
     >>> bool(np.allclose((high - low) / 2, worst, rtol=1e-3))
     True
     """
-    samples = _count("samples", samples)
+    samples = count_of("samples", samples)
     known = mechanism.parameters
     if tolerances is None:
         tolerances = {n: p.tolerance for n, p in known.items() if p.tolerance is not None}
@@ -126,14 +127,15 @@ def tolerance(
             raise UsageError(
                 'no parameter has a tolerance; add for example `tolerance = "0.05*mm"` to one'
             )
-    tolerances = {name: _size(name, value) for name, value in tolerances.items()}
+    sizes_given = mapping("tolerances", tolerances)
+    tolerances = {name: _size(name, value) for name, value in sizes_given.items()}
     names = list(tolerances)
     result = mechanism.run(t, drive, parameters, variables, gradient=names)
     sizes = np.array([tolerances[name] for name in names])
     deviations = np.abs(result.gradient.to_numpy()) * sizes[None, :, None]
     worst = deviations.sum(axis=1)
     statistical = np.sqrt((deviations**2).sum(axis=1))
-    given = _given(parameters)
+    given = given_values(parameters)
     values = dict(zip(known, mechanism._inner.values(given)))
     nominal = np.array([values[name] for name in names])
 
@@ -162,7 +164,7 @@ def _size(name: str, tolerance: float) -> float:
     """Returns the tolerance of a parameter, a number that is not negative."""
     try:
         size = float(tolerance)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         size = np.nan
     if not 0 <= size < np.inf:
         raise UsageError(

@@ -6,6 +6,7 @@ use biela::kinematics::Pose;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
+use crate::call::apart;
 use crate::error::Failure;
 use crate::follower::{Fit, Follower, Refused};
 
@@ -55,29 +56,34 @@ impl Attempt {
     /// Tries unknowns. With `nearest`, free values of drivers become those of the nearest poses in
     /// their range. Returns `None` where the mechanism does not reach the unknowns, or the sum of
     /// squared residuals is not finite.
-    fn go<'py>(&self, py: Python<'py>, unknowns: Vec<f64>, nearest: bool) -> Option<Tried<'py>> {
-        let (unknowns, leaders, curvatures, residuals) = py.detach(|| {
+    fn go<'py>(
+        &self,
+        py: Python<'py>,
+        unknowns: Vec<f64>,
+        nearest: bool,
+    ) -> Result<Option<Tried<'py>>, Failure> {
+        let tried = apart(py, || {
             let trial = &mut *self.trial();
             trial.unknowns = unknowns;
-            trial.go(nearest).ok()?;
-            let (leaders, curvatures) = (trial.leaders.clone(), trial.curvatures.clone());
-            let (unknowns, residuals) = (trial.unknowns.clone(), trial.residuals.clone());
-            Some((unknowns, leaders, curvatures, residuals))
+            let went = trial.go(nearest);
+            Ok(went.ok().map(|()| {
+                let (leaders, curvatures) = (trial.leaders.clone(), trial.curvatures.clone());
+                let (unknowns, residuals) = (trial.unknowns.clone(), trial.residuals.clone());
+                (unknowns, leaders, curvatures, residuals)
+            }))
         })?;
-        Some((
-            unknowns.into_pyarray(py),
-            leaders,
-            curvatures,
-            residuals.into_pyarray(py),
-        ))
+        Ok(tried.map(|(unknowns, leaders, curvatures, residuals)| {
+            let (unknowns, residuals) = (unknowns.into_pyarray(py), residuals.into_pyarray(py));
+            (unknowns, leaders, curvatures, residuals)
+        }))
     }
 
     /// Returns the derivatives of the residuals at the unknowns tried last, by residual, then by
     /// unknown, and keeps these unknowns. Returns `None` and keeps none where there are no
     /// finite derivatives.
-    fn keep<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        let derivatives = py.detach(|| self.trial().keep().ok())?;
-        Some(derivatives.into_pyarray(py))
+    fn keep<'py>(&self, py: Python<'py>) -> Result<Option<Bound<'py, PyArray1<f64>>>, Failure> {
+        let derivatives = apart(py, || Ok(self.trial().keep().ok()))?;
+        Ok(derivatives.map(|derivatives| derivatives.into_pyarray(py)))
     }
 }
 

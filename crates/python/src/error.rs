@@ -13,6 +13,41 @@ pub(crate) enum Failure {
     Assembly(String),
     /// A file cannot be read or written, or an FMU cannot be made.
     File(String),
+    /// A defect of biela: what has panicked, and where.
+    Defect(String),
+    /// Python raises an exception: that of Ctrl-C.
+    Raised(PyErr),
+    /// The call has ended before this thread was done.
+    Ended,
+}
+
+impl Failure {
+    /// Returns the exception's class and message; the exception itself that Python raises.
+    fn told(self) -> Result<(&'static str, String), PyErr> {
+        match self {
+            Self::Usage(message) => Ok(("UsageError", message)),
+            Self::Assembly(message) => Ok(("AssemblyError", message)),
+            Self::File(message) => Ok(("FileError", message)),
+            Self::Defect(what) => Ok((
+                "Error",
+                format!("defect in biela: {what}; please report it with the mechanism file"),
+            )),
+            Self::Raised(exception) => Err(exception),
+            Self::Ended => Ok(("Error", "the call was ended".to_owned())),
+        }
+    }
+
+    /// Returns the reason why a variant has no values.
+    ///
+    /// # Errors
+    ///
+    /// The failure itself where it is not the variant's: it ends the call.
+    pub(crate) fn reason(self) -> Result<String, Self> {
+        match self {
+            Self::Usage(message) | Self::Assembly(message) | Self::File(message) => Ok(message),
+            other => Err(other),
+        }
+    }
 }
 
 impl From<kinematics::Error> for Failure {
@@ -23,12 +58,10 @@ impl From<kinematics::Error> for Failure {
 
 impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
-        let (class, message) = match failure {
-            Failure::Usage(message) => ("UsageError", message),
-            Failure::Assembly(message) => ("AssemblyError", message),
-            Failure::File(message) => ("FileError", message),
-        };
-        Python::attach(|py| exception(py, class, (message,)))
+        match failure.told() {
+            Ok((class, message)) => Python::attach(|py| exception(py, class, (message,))),
+            Err(raised) => raised,
+        }
     }
 }
 

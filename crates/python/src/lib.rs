@@ -3,6 +3,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `error` | errors as exceptions of the package |
+//! | `call` | the work of a call: without the interpreter's lock, until Ctrl-C; panics as errors |
 //! | `scenario` | parameters, and motions of drivers as samples |
 //! | `runner` | a mechanism that moves along samples |
 //! | `run`, `film` | one motion with its gradients; its animation |
@@ -14,6 +15,7 @@
 //! Shapes, units and names of Python are the package's business; here arrays are flat.
 
 mod attempt;
+mod call;
 mod error;
 mod film;
 mod fit;
@@ -30,10 +32,20 @@ use std::ffi::OsString;
 
 use pyo3::prelude::*;
 
+use crate::call::apart;
+use crate::error::Failure;
+
 /// Runs the program with these arguments, the first being its own name; returns its exit status.
 #[pyfunction]
-fn program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| biela_tools::cli::status(arguments))
+fn program(py: Python<'_>, arguments: Vec<OsString>) -> Result<u8, Failure> {
+    apart(py, || Ok(biela_tools::cli::status(arguments)))
+}
+
+/// Fails as a defect of biela would; for tests, not in wheels.
+#[cfg(debug_assertions)]
+#[pyfunction]
+fn defect(py: Python<'_>) -> Result<(), Failure> {
+    apart(py, || panic!("a test"))
 }
 
 /// Says that a name is unknown, with the known name that may be meant.
@@ -48,6 +60,8 @@ fn _biela(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(program, module)?)?;
     module.add_function(wrap_pyfunction!(unknown_name, module)?)?;
+    #[cfg(debug_assertions)]
+    module.add_function(wrap_pyfunction!(defect, module)?)?;
     module.add_class::<mechanism::Mechanism>()?;
     module.add_class::<run::Run>()?;
     module.add_class::<sweep::Sweep>()?;

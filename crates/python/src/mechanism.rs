@@ -14,6 +14,7 @@ use biela_tools::page::{Place, edit};
 use pyo3::prelude::*;
 
 use crate::attempt::Attempt;
+use crate::call::{Cores, apart};
 use crate::error::{Failure, exception};
 use crate::fit::Targets;
 use crate::follower::{Fit, Target};
@@ -76,7 +77,7 @@ impl Mechanism {
         path: Option<PathBuf>,
     ) -> PyResult<Self> {
         let source = source(&name, text, path)?;
-        match Model::parse(&source) {
+        match apart(py, || Ok(Model::parse(&source)))? {
             Ok((model, warnings)) => Ok(Self {
                 source,
                 model: Arc::new(model),
@@ -106,12 +107,12 @@ impl Mechanism {
         modes: bool,
     ) -> Result<String, Failure> {
         let source = source(&name, text, path)?;
-        Ok(py.detach(|| cli::check(&source, modes).to_string()))
+        apart(py, || Ok(cli::check(&source, modes).to_string()))
     }
 
     /// Returns the report of `biela check --format json`.
-    fn report(&self, py: Python<'_>, modes: bool) -> String {
-        py.detach(|| cli::check(&self.source, modes).to_string())
+    fn report(&self, py: Python<'_>, modes: bool) -> Result<String, Failure> {
+        apart(py, || Ok(cli::check(&self.source, modes).to_string()))
     }
 
     /// Returns whether the file names tables, which are beside it.
@@ -164,11 +165,10 @@ impl Mechanism {
 
     /// Returns the names and units of the columns of a run.
     #[getter]
-    fn columns(&self, py: Python<'_>) -> Vec<(String, &'static str)> {
-        let columns = py.detach(|| self.all_columns()).iter();
-        columns
-            .map(|column| (column.name.clone(), column.unit.name))
-            .collect()
+    fn columns(&self, py: Python<'_>) -> Result<Vec<(String, &'static str)>, Failure> {
+        let columns = apart(py, || Ok(self.all_columns()))?.iter();
+        let columns = columns.map(|column| (column.name.clone(), column.unit.name));
+        Ok(columns.collect())
     }
 
     /// Returns start, stop and step of the file \[s\].
@@ -192,7 +192,7 @@ impl Mechanism {
         columns: Vec<usize>,
         by: Vec<String>,
     ) -> Result<Run, Failure> {
-        py.detach(|| {
+        apart(py, || {
             let mut scenario = self.scenario(motions)?;
             let mut parameters = parameters;
             scenario.set_starts(&take_starts(&self.model, &mut parameters)?);
@@ -215,14 +215,15 @@ impl Mechanism {
         variants: usize,
         columns: Vec<usize>,
     ) -> Result<Sweep, Failure> {
-        py.detach(|| {
+        let cores = Cores::of_process(py)?;
+        apart(py, || {
             let scenario = self.scenario(motions)?;
             let parameters = self.in_force(parameters)?;
             let swept = swept.into_iter();
             let swept = swept.map(|(name, values)| Ok((self.free(&name)?, values)));
             let swept: Vec<_> = swept.collect::<Result<_, Failure>>()?;
             let columns = self.chosen(&columns);
-            sweep(&scenario, &parameters, &swept, variants, &columns)
+            cores.run(|stop| sweep(&scenario, &parameters, &swept, variants, &columns, stop))
         })
     }
 
@@ -236,7 +237,7 @@ impl Mechanism {
         free: Vec<String>,
         turns: Option<String>,
     ) -> Result<Targets, Failure> {
-        py.detach(|| {
+        apart(py, || {
             let mut rows = 0;
             let targets = targets.into_iter();
             let targets = targets.map(|(poses, free_driver, columns, wanted, weight)| {
@@ -290,7 +291,7 @@ impl Mechanism {
         attempt: &Attempt,
         names: Vec<String>,
     ) -> Result<String, Failure> {
-        py.detach(|| self.text_at(&names, &attempt.home()))
+        apart(py, || self.text_at(&names, &attempt.home()))
     }
 
     /// Finds the range of a driver from the start of a motion.
@@ -301,7 +302,7 @@ impl Mechanism {
         motions: Motions,
         parameters: Vec<(String, Value)>,
     ) -> Result<RangeRow<'py>, Failure> {
-        let (id, range) = py.detach(|| -> Result<_, Failure> {
+        let (id, range) = apart(py, || {
             let scenario = self.scenario(motions)?;
             let id = self.driver_named(driver)?;
             let mut runner = Runner::new(&scenario, &[])?;
@@ -321,7 +322,7 @@ impl Mechanism {
         motions: Motions,
         parameters: Vec<(String, Value)>,
     ) -> Result<ModesRow, Failure> {
-        py.detach(|| {
+        apart(py, || {
             let scenario = self.scenario(motions)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&self.in_force(parameters)?)?;
@@ -344,7 +345,7 @@ impl Mechanism {
         columns: Vec<usize>,
         balance: bool,
     ) -> Result<LinearRow, Failure> {
-        py.detach(|| {
+        apart(py, || {
             let scenario = self.scenario(motions)?;
             let all = self.all_columns();
             let outputs: Vec<Output> = columns.iter().map(|index| all[*index].clone()).collect();
@@ -381,7 +382,7 @@ impl Mechanism {
         contents: Contents,
     ) -> Result<String, Failure> {
         let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
-        py.detach(|| {
+        apart(py, || {
             let scenario = self.scenario(motions)?;
             let columns = self.all_columns().iter();
             let columns: Vec<Output> = columns
@@ -428,7 +429,7 @@ impl Mechanism {
         parameters: Vec<(String, Value)>,
         estimates: Option<Vec<f64>>,
     ) -> Result<String, Failure> {
-        py.detach(|| {
+        apart(py, || {
             let names: Vec<String> = parameters.iter().map(|(name, _)| name.clone()).collect();
             let scenario = self.scenario(motions)?;
             let mut pose = scenario.home.0.clone();
@@ -455,17 +456,11 @@ impl Mechanism {
         platforms: Vec<String>,
     ) -> Result<Vec<u8>, Failure> {
         let platforms: Vec<&str> = platforms.iter().map(String::as_str).collect();
-        py.detach(|| {
-            cli::archive(
-                &self.source,
-                &self.model,
-                fmi,
-                terminals,
-                runtime.as_deref(),
-                &platforms,
-            )
+        apart(py, || {
+            let (source, model, runtime) = (&self.source, &self.model, runtime.as_deref());
+            let archive = cli::archive(source, model, fmi, terminals, runtime, &platforms);
+            archive.map_err(Failure::File)
         })
-        .map_err(Failure::File)
     }
 }
 
@@ -538,7 +533,12 @@ impl Mechanism {
 
     /// Returns the columns of a run; reactions that are indeterminate take an assembly to find.
     fn all_columns(&self) -> &[Output] {
-        self.columns.get_or_init(|| Output::all(&self.model))
+        if let Some(columns) = self.columns.get() {
+            return columns;
+        }
+        // Made before the cell is locked: a child forked meanwhile would find it locked for ever.
+        let columns = Output::all(&self.model);
+        self.columns.get_or_init(|| columns)
     }
 
     fn chosen(&self, indices: &[usize]) -> Vec<Output> {

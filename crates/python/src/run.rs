@@ -8,13 +8,14 @@ use biela_tools::drawing::ForcePlace;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
+use crate::call::{Interrupt, apart};
 use crate::error::Failure;
 use crate::film::Film;
 use crate::runner::Runner;
 use crate::scenario::Scenario;
 
 /// The rows of a run.
-#[pyclass(frozen)]
+#[pyclass]
 pub(crate) struct Run {
     mechanism: Arc<Mechanism>,
     /// Values by row, then by column.
@@ -35,14 +36,14 @@ pub(crate) struct Run {
 
 #[pymethods]
 impl Run {
-    /// Returns the values, by row, then by column.
-    fn values<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.values.clone().into_pyarray(py)
+    /// Returns the values, by row, then by column, and keeps none of them.
+    fn take_values<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        std::mem::take(&mut self.values).into_pyarray(py)
     }
 
-    /// Returns the derivatives, by row, then by direction, then by column.
-    fn gradient<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.gradient.clone().into_pyarray(py)
+    /// Returns the derivatives, by row, then by direction, then by column, and keeps none of them.
+    fn take_gradient<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        std::mem::take(&mut self.gradient).into_pyarray(py)
     }
 
     /// Returns whether the run has forces that arrows can show.
@@ -52,8 +53,8 @@ impl Run {
     }
 
     /// Returns the page on which the mechanism moves; `None` for a run without rows.
-    fn page(&self, py: Python<'_>, forces: bool) -> Option<String> {
-        py.detach(|| self.film.page(&self.mechanism, forces))
+    fn page(&self, py: Python<'_>, forces: bool) -> Result<Option<String>, Failure> {
+        apart(py, || Ok(self.film.page(&self.mechanism, forces)))
     }
 }
 
@@ -85,7 +86,9 @@ pub(crate) fn run(
         notices: scenario.whole_angles(),
     };
     result.notices.extend(runner.notices());
+    let mut interrupt = Interrupt::of_call();
     for row in 0..rows {
+        interrupt.check()?;
         if row > 0 {
             let advanced = runner.advance(row);
             result.notices.extend(runner.notices());

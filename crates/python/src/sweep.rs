@@ -1,5 +1,7 @@
 //! The same motion of many variants, on all cores.
 
+use std::sync::atomic::AtomicBool;
+
 use biela::kinematics::Output;
 use biela::mechanism::ParameterId;
 use biela_tools::cli::check_parameter;
@@ -7,6 +9,7 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
+use crate::call::Interrupt;
 use crate::error::Failure;
 use crate::runner::{BATCH, Runner};
 use crate::scenario::Scenario;
@@ -43,13 +46,14 @@ struct Outcome {
 ///
 /// # Errors
 ///
-/// The equations of the mechanism do not fit.
+/// The equations of the mechanism do not fit; [`Failure::Ended`] after `stop`.
 pub(crate) fn sweep(
     scenario: &Scenario,
     parameters: &[f64],
     swept: &[(ParameterId, Vec<f64>)],
     variants: usize,
     columns: &[Output],
+    stop: &AtomicBool,
 ) -> Result<Sweep, Failure> {
     // An error of the equations is the same for all variants.
     Runner::new(scenario, columns)?;
@@ -61,44 +65,45 @@ pub(crate) fn sweep(
             rows: 0,
             reason: None,
         };
+        let mut interrupt = Interrupt::Told(stop);
         let mut own = parameters.to_vec();
         for (parameter, series) in swept {
             let value = series[variant];
             if let Err(reason) = check_parameter(&scenario.own, *parameter, value) {
                 outcome.reason = Some(reason);
-                return outcome;
+                return Ok(outcome);
             }
             own[parameter.index()] = value;
         }
         scenario.own.derive_parameters(&mut own);
-        if let Err(Failure::Assembly(reason) | Failure::Usage(reason) | Failure::File(reason)) =
-            runner.start(&own)
-        {
-            outcome.reason = Some(reason);
-            return outcome;
+        if let Err(failure) = runner.start(&own) {
+            outcome.reason = Some(failure.reason()?);
+            return Ok(outcome);
         }
         for row in 0..rows {
+            interrupt.check()?;
             if row > 0
                 && let Err(reason) = runner.advance(row)
             {
                 outcome.reason = Some(reason);
-                return outcome;
+                return Ok(outcome);
             }
             for (column, values) in columns.iter().zip(values.chunks_exact_mut(rows)) {
                 values[row] = runner.value(column);
             }
             outcome.rows += 1;
         }
-        outcome
+        Ok(outcome)
     };
     let batches = values.par_chunks_mut((BATCH * size).max(1)).enumerate();
     let outcomes: Vec<Vec<Outcome>> = batches
         .map(|(batch, values)| {
+            Interrupt::Told(stop).check()?;
             let mut runner = Runner::new(scenario, columns)?;
             let variants = values.chunks_exact_mut(size).enumerate();
-            Ok(variants
+            variants
                 .map(|(index, values)| run(&mut runner, BATCH * batch + index, values))
-                .collect())
+                .collect()
         })
         .collect::<Result<_, Failure>>()?;
     let mut result = Sweep {
