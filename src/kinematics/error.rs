@@ -118,6 +118,15 @@ pub enum Error {
         /// The values that it can have.
         demand: &'static str,
     },
+    /// A driver follows an input, whose rates a host of model exchange does not tell.
+    #[error(
+        "driver `{driver}` follows an input, which is possible in co-simulation only: rates of the driver \
+         follow from the steps of the host there"
+    )]
+    FollowsInput {
+        /// Name of the driver.
+        driver: String,
+    },
     /// A force has no direction or no finite size.
     #[error("force `{force}` {reason}")]
     NoForce {

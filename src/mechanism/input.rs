@@ -1,6 +1,6 @@
 //! Inputs: numbers that come from outside while a mechanism moves.
 
-use super::{Expression, Load, Mechanism, Unit};
+use super::{Driver, DriverSource, Expression, Load, Mechanism, Motion, Unit};
 
 /// A number that comes from outside, such as a voltage: an FMI input.
 #[derive(Clone, Debug)]
@@ -75,14 +75,56 @@ impl Mechanism {
         inputs.chain(forces).collect()
     }
 
-    /// Gives a load a size, an expression in t and the parameters: it is no input any more.
-    pub fn give_load(&mut self, target: LoadTarget, size: Expression) {
+    /// Gives a load a size, an expression in t and the parameters: it is no input any more. Returns whether
+    /// that is possible: the motions of drivers that follow an input may become nested too deeply.
+    #[must_use]
+    pub fn give_load(&mut self, target: LoadTarget, size: Expression) -> bool {
         match target {
-            LoadTarget::Input(index) => self.inputs[index].given = Some(size),
+            LoadTarget::Input(index) => {
+                self.inputs[index].given = Some(size);
+                self.resolve_motions()
+            }
             LoadTarget::Force(force, component) => {
                 self.forces[force].load.set_component(component, size);
+                true
             }
         }
+    }
+
+    /// Makes the motions of drivers that follow inputs those for what these are given, or for their values
+    /// at the start.
+    fn resolve_motions(&mut self) -> bool {
+        let inputs = &self.inputs;
+        let in_place = |index: usize| {
+            let Input { given, start, .. } = &inputs[index];
+            given
+                .clone()
+                .unwrap_or_else(|| Expression::constant(*start))
+        };
+        self.drivers.iter_mut().all(|driver| {
+            let Some(follows) = &driver.follows else {
+                return true;
+            };
+            let motion = follows.with_inputs(in_place);
+            let is_possible = motion.is_some();
+            if let Some(motion) = motion {
+                driver.source = DriverSource::Motion(Motion::Expression(motion));
+            }
+            is_possible
+        })
+    }
+
+    /// Returns the driver whose motion follows an input, if there is one.
+    #[must_use]
+    pub fn follower(&self, target: LoadTarget) -> Option<&Driver> {
+        let LoadTarget::Input(input) = target else {
+            return None;
+        };
+        let mut drivers = self.drivers.iter();
+        drivers.find(|driver| {
+            let mut inputs = driver.follows.iter().flat_map(Expression::inputs);
+            inputs.any(|index| index == input)
+        })
     }
 
     /// Returns the places among the loads of the inputs, and of the first component of each force: `None`

@@ -230,6 +230,9 @@ pub struct Driver {
     pub coordinate: Coordinate,
     /// Source of its value.
     pub source: DriverSource,
+    /// The prescribed motion with inputs of the mechanism in it. `source` has the motion for what these are
+    /// given, or for their values at the start.
+    pub follows: Option<Expression>,
     /// Whether the file makes it an FMI input, whose acceleration is free, also where a run gives
     /// it another source.
     pub is_input: bool,

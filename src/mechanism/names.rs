@@ -12,7 +12,7 @@ const MAX_SUGGESTIONS: u32 = 100;
 const MAX_SUGGESTED_LENGTH: usize = 64;
 
 /// Most names that a message lists.
-const MAX_LISTED: usize = 20;
+const MAX_LISTED: usize = 30;
 
 /// Returns whether `name` matches `[A-Za-z][A-Za-z0-9_]*`.
 ///
@@ -103,7 +103,7 @@ impl<'a, T: Copy> NameTable<'a, T> {
     }
 
     /// Returns all names with their meanings, in the order of the names.
-    pub(super) fn candidates_in_order(&self) -> Vec<(&'a str, T)> {
+    pub(super) fn in_order(&self) -> Vec<(&'a str, T)> {
         let mut all: Vec<_> = self
             .meanings
             .iter()

@@ -227,3 +227,134 @@ fn an_event_indicator_tells_a_corner() {
         "{inside:?}"
     );
 }
+
+/// A slider that a driver moves: by the height of a level and by time, or as an FMI input.
+fn slider(driver: &str) -> Arc<Mechanism> {
+    parse(&format!(
+        r#"
+format = 1
+name = "slider"
+[inputs]
+level = {{ start = 0.5 }}
+[parameters]
+share = {{ value = 0.2, tunable = true }}
+base = "share/2"
+[ground.markers]
+O = [0, 0]
+[bodies.block]
+markers = {{ B = [0, 0] }}
+mass = 2
+[joints]
+guide = {{ type = "translational", markers = ["ground.O", "block.B"] }}
+[drivers]
+x = {{ coordinate = "x", markers = ["ground.O", "block.B"], {driver} }}
+[forces]
+wind = {{ coordinate = "x", markers = ["ground.O", "block.B"], value = "-level*x.velocity" }}
+"#
+    ))
+}
+
+const FOLLOWING: &str = r#"motion = "share*level^2 + base + 0.1*t""#;
+const DRIVEN: &str = "start = 0.15";
+
+/// The value of the motion for a level.
+fn followed(level: f64, t: f64) -> f64 {
+    0.2 * level * level + 0.1 + 0.1 * t
+}
+
+/// A driver that follows an input moves as one does that the host sets to the same values: positions, rates
+/// and efforts, for each source of rates and each extrapolation, and with input derivatives.
+#[test]
+fn a_driver_that_follows_an_input_moves_as_an_input() {
+    for (rates, extrapolation) in [(1, 1), (3, 1), (1, 2)] {
+        let [mut follower, mut driven] = [FOLLOWING, DRIVEN].map(|driver| {
+            let mut instance = instance_of(slider(driver), Interface::CoSimulation);
+            instance.setup_experiment(0.0, None).expect("legal");
+            let settings = ["rates", "extrapolation"].map(|name| vr(&instance, name));
+            instance
+                .set_integer(&settings, &[rates, extrapolation])
+                .expect("legal");
+            instance.enter_initialization_mode().expect("legal");
+            instance.exit_initialization_mode().expect("it starts");
+            instance
+        });
+        let h = 0.1;
+        for step in 0..20 {
+            let t = h * f64::from(step);
+            let (level, rate) = (0.5 + (2.0 * t).sin(), 2.0 * (2.0 * t).cos());
+            set(&mut follower, [("level", level)]);
+            set(
+                &mut driven,
+                [("level", level), ("x.position", followed(level, t))],
+            );
+            if step > 10 {
+                let reference = [vr(&follower, "level")];
+                follower
+                    .set_real_input_derivatives(&reference, &[1], &[rate])
+                    .expect("legal");
+                let reference = [vr(&driven, "level")];
+                driven
+                    .set_real_input_derivatives(&reference, &[1], &[rate])
+                    .expect("legal");
+                let reference = [vr(&driven, "x.position"); 2];
+                let path = [0.4 * level * rate + 0.1, 0.4 * rate * rate];
+                driven
+                    .set_real_input_derivatives(&reference, &[1, 2], &path)
+                    .expect("legal");
+            }
+            follower.do_step(t, h).expect("it moves");
+            driven.do_step(t, h).expect("it moves");
+            let names = ["block.x", "block.vx", "block.ax", "x.effort", "wind.effort"];
+            let pairs = get(&mut follower, names)
+                .into_iter()
+                .zip(get(&mut driven, names));
+            for ((found, expected), name) in pairs.zip(names) {
+                let off = (found - expected).abs() / (1.0 + expected.abs());
+                assert!(
+                    off < 1e-11,
+                    "{rates} {extrapolation} {t} {name}: {found} {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// Derivatives by the input and by parameters, against differences, and the dependencies.
+#[test]
+fn derivatives_of_what_follows_an_input_are_those_of_differences() {
+    let mut instance = instance_of(slider(FOLLOWING), Interface::CoSimulation);
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    set(&mut instance, [("level", 0.8)]);
+    let unknowns = ["block.x", "block.vx", "x.effort"].map(|name| vr(&instance, name));
+    for (known, slope) in [("level", 0.4 * 0.8), ("share", 0.64 + 0.5)] {
+        let known = vr(&instance, known);
+        let exact = instance
+            .directional_derivative(&unknowns, &[known], &[1.0])
+            .expect("it exists");
+        let found = crate::differences::differences(&mut instance, &unknowns, known);
+        assert!((exact[0] - slope).abs() < 1e-12, "{exact:?}");
+        for (exact, found) in exact.iter().zip(&found) {
+            assert!((exact - found).abs() < 1e-7, "{exact} {found}");
+        }
+        let known_of = instance.dependencies(Call::GetVariableDependencies, unknowns[0]);
+        assert!(known_of.is_err() || known_of.expect("legal").iter().any(|(vr, _)| *vr == known));
+    }
+    let names: Vec<_> = instance
+        .variables()
+        .iter()
+        .map(|v| v.name.clone())
+        .collect();
+    assert!(
+        names.contains(&"x.position".to_owned()),
+        "it is an output: {names:?}"
+    );
+}
+
+/// In model exchange no step tells the rates.
+#[test]
+fn following_an_input_is_refused_in_model_exchange() {
+    let refused = MechanismModel::new(slider(FOLLOWING), Interface::ModelExchange);
+    let error = refused.err().expect("no rates").to_string();
+    assert!(error.starts_with("driver `x` follows an input"), "{error}");
+}

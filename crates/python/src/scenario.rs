@@ -111,10 +111,20 @@ impl Scenario {
                 match drive {
                     Drive::Text(text) => {
                         let size = expression(own, &text)?;
-                        driven.give_load(input.target, size);
+                        if !driven.give_load(input.target, size) {
+                            let message = "is nested too deeply for the motion that follows it";
+                            return Err(Failure::Usage(format!("drive: `{name}` {message}")));
+                        }
                     }
                     Drive::Samples(orders) => {
                         check_samples(&name, &orders, times.len())?;
+                        if let Some(driver) = own.follower(input.target) {
+                            return Err(Failure::Usage(format!(
+                                "drive: driver `{}` follows the input `{name}`, which takes an \
+                                 expression, no array",
+                                driver.name
+                            )));
+                        }
                         let [sizes, ..] = orders;
                         loads.push((name, sizes));
                     }

@@ -206,7 +206,10 @@ impl<'a> DependencyTable<'a> {
         let mut inputs = Vec::new();
         for &id in &origins.drivers {
             let driver = &self.mechanism.drivers[id.index()];
-            if driver.is_given() {
+            if let Some(follows) = &driver.follows {
+                inputs.extend(self.loads_in(follows));
+                inputs.push(Quantity::Time);
+            } else if driver.is_given() {
                 let orders = Order::ALL.into_iter().filter(|order| *order <= highest);
                 inputs.extend(orders.map(|order| Quantity::Input(id, order)));
             } else if !driver.is_free() {
@@ -217,7 +220,8 @@ impl<'a> DependencyTable<'a> {
     }
 
     fn is_input(&self, driver: DriverId) -> bool {
-        self.mechanism.drivers[driver.index()].is_given()
+        let driver = &self.mechanism.drivers[driver.index()];
+        driver.is_given() || driver.follows.is_some()
     }
 
     /// Returns the inputs of forces, and the time if forces depend on it, for a force or a measure that
@@ -261,12 +265,15 @@ impl<'a> DependencyTable<'a> {
 
     /// Returns the inputs of the file on which the size of a force depends.
     fn inputs_of_load(&self, load: &Load) -> Vec<Quantity> {
+        load.moving_expressions()
+            .flat_map(|size| self.loads_in(size))
+            .collect()
+    }
+
+    /// Returns the inputs of the file in an expression.
+    fn loads_in(&self, expression: &Expression) -> Vec<Quantity> {
         let ([places, _], _) = self.mechanism.load_places();
-        let variables = load.moving_expressions().flat_map(Expression::variables);
-        let places = variables.filter_map(|variable| match variable {
-            Of::Input(index) => places[index],
-            _ => None,
-        });
+        let places = expression.inputs().filter_map(|index| places[index]);
         places.map(Quantity::ForceInput).collect()
     }
 
@@ -319,6 +326,9 @@ impl<'a> DependencyTable<'a> {
                 }
                 Signal::Motion(driver) => {
                     origins.drivers.insert(driver);
+                    if let Some(follows) = &mechanism.drivers[driver.index()].follows {
+                        origins.add_expression(mechanism, follows);
+                    }
                     if let Some(motion) = mechanism.drivers[driver.index()].motion() {
                         origins.add_motion(mechanism, motion);
                     }

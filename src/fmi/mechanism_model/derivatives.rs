@@ -60,6 +60,7 @@ impl MechanismModel {
                 _ => unreachable!("knowns are inputs, states, parameters and time"),
             }
         }
+        self.follow_along(&mut direction, &loads, phase);
         self.accelerate_freedoms(&mut direction, &mut loads)?;
         let uses_forces = |unknown: &Quantity| match unknown {
             Quantity::Output(source) => source.uses_forces(&self.mechanism),
@@ -111,7 +112,7 @@ impl MechanismModel {
 
     /// Returns the derivatives of a driver's value, velocity and acceleration in force by one of its
     /// inputs.
-    fn derivatives_by(&self, driver: DriverId, order: Order, phase: Phase) -> [f64; 3] {
+    pub(super) fn derivatives_by(&self, driver: DriverId, order: Order, phase: Phase) -> [f64; 3] {
         let input = &self.course.inputs[driver.index()];
         let rates = self.rule().rates;
         if phase == Phase::Event {

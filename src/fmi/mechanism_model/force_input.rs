@@ -1,6 +1,7 @@
 //! One input of the file or of a force.
 
 use crate::fmi::codec::{Codec, Unreadable};
+use crate::mechanism::Jet;
 
 /// Value of an input, and its path during the next step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +27,11 @@ impl ForceInput {
     /// Returns the value as set by the host.
     pub(super) fn get(&self) -> f64 {
         self.value
+    }
+
+    /// Returns the value with its derivatives for the next step.
+    pub(super) fn path(&self) -> Jet {
+        Jet::new(self.value, self.derivatives)
     }
 
     /// Returns the value at the present point.

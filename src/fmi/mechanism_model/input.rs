@@ -33,6 +33,8 @@ pub(super) struct DriverInput {
     derivatives: [[Option<f64>; 2]; 3],
     /// Whether the host has set velocity and acceleration to other than zero after initialization.
     used: [bool; 2],
+    /// Whether there are rate inputs: not of a driver that follows inputs of the file.
+    has_rates: bool,
     history: History,
     /// Size \[s\] of the last step if the rates extrapolated the position in it, else 0.
     extrapolated_over: f64,
@@ -46,8 +48,17 @@ impl DriverInput {
             position: start,
             derivatives: [[None; 2]; 3],
             used: [false; 2],
+            has_rates: true,
             history: History::default(),
             extrapolated_over: 0.0,
+        }
+    }
+
+    /// Returns the inputs without those of rates.
+    pub(super) fn without_rates(self) -> Self {
+        Self {
+            has_rates: false,
+            ..self
         }
     }
 
@@ -184,7 +195,7 @@ impl DriverInput {
     /// Returns whether a rate input is in use at the end of a step of size `h`.
     fn is_used(&self, order: Order, rates: RateSource, h: f64) -> bool {
         match rates {
-            RateSource::Inputs => true,
+            RateSource::Inputs => self.has_rates,
             RateSource::Estimated => false,
             RateSource::Auto => {
                 let at_start = h <= 0.0 && self.history.is_empty();
@@ -267,6 +278,7 @@ impl DriverInput {
             position,
             derivatives,
             used,
+            has_rates: _,
             history,
             extrapolated_over,
         } = self;

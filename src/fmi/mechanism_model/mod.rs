@@ -24,6 +24,7 @@ mod decisions;
 mod dependencies;
 mod derivatives;
 mod description;
+mod follower;
 mod force_input;
 mod forces;
 mod free;
@@ -66,6 +67,7 @@ use crate::mechanism::{
     rounded,
 };
 use decisions::Decisions;
+use follower::with_followers;
 use force_input::ForceInput;
 use guid::guid_decided;
 use input::DriverInput;
@@ -183,6 +185,9 @@ impl Course {
 /// Returns the inputs of a driver at its start; a freedom's are its states.
 fn start_input(driver: &Driver) -> DriverInput {
     let mut input = DriverInput::new(driver.start().unwrap_or(0.0));
+    if driver.follows.is_some() {
+        return input.without_rates();
+    }
     if driver.is_free() {
         input.set(Order::Velocity, driver.start_velocity());
     }
@@ -221,6 +226,7 @@ impl MechanismModel {
             Some(kept) => (kept.mechanism, kept.overlaps, kept.events),
             None => (mechanism, Vec::new(), Vec::new()),
         };
+        let mechanism = with_followers(mechanism, interface)?;
         let path = Path::new(&mechanism);
         let solver = Solver::assembled(Arc::clone(&mechanism), &path);
         let solver = solver.map_err(|error| offer_start(error, &mechanism))?;
@@ -293,6 +299,9 @@ impl MechanismModel {
     /// Sets an input of the file or of a force, on which no pose depends.
     fn set_force_input(&mut self, place: usize, value: f64) {
         self.course.force_inputs[place].set(value);
+        if self.has_followers() {
+            self.set_freshness(Freshness::Stale);
+        }
         if self.motion.free().is_some() {
             self.set_freshness(self.course.freshness.min(Freshness::Pose));
         }

@@ -135,6 +135,7 @@ impl MechanismModel {
     /// Sets the path from the committed pose to the values in force at the end of a step of size
     /// `h` from `start`; with `h = 0` to the values set. The solver gets its whole budget for it.
     pub(super) fn set_path(&mut self, start: f64, h: f64) {
+        self.set_followers(start);
         let rule = self.rule();
         // A saturating cast.
         (self.motion.solver).set_budget(Budget::of(self.course.budget as u32));

@@ -73,7 +73,8 @@ pub(super) fn variables_of(
     table.add_inputs(mechanism);
     table.add_load_inputs(mechanism, |target| matches!(target, LoadTarget::Force(..)));
     table.add_parameters(mechanism);
-    if mechanism.drivers.iter().any(Driver::is_given) {
+    let is_moved = |driver: &Driver| driver.is_given() || driver.follows.is_some();
+    if mechanism.drivers.iter().any(is_moved) {
         table.add_settings(mechanism);
     }
     table.add_outputs(mechanism, decisions);
@@ -139,6 +140,9 @@ impl Table {
             let DriverSource::Input { start } = driver.source else {
                 continue;
             };
+            if driver.follows.is_some() {
+                continue;
+            }
             let id = DriverId(index);
             let names = Output::of_driver(mechanism, id);
             for (order, name) in Order::ALL.into_iter().zip(names) {

@@ -174,7 +174,7 @@ impl Output {
         let mut list = List::default();
         list.add_places(mechanism);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
-            if !driver.is_given() {
+            if !driver.is_given() || driver.follows.is_some() {
                 list.add_driver(mechanism, DriverId(index));
             }
         }

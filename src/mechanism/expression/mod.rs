@@ -462,6 +462,32 @@ impl Expression {
         self.program.contains(&Operation::Variable(variable))
     }
 
+    /// Returns the inputs of the mechanism that it uses, each as often as it does.
+    pub fn inputs(&self) -> impl Iterator<Item = usize> {
+        self.variables().filter_map(|variable| match variable {
+            Variable::Input(index) => Some(index),
+            _ => None,
+        })
+    }
+
+    /// Returns the expression with an expression in the place of each input; `None` if that is nested too
+    /// deeply.
+    pub(in crate::mechanism) fn with_inputs(&self, of: impl Fn(usize) -> Self) -> Option<Self> {
+        let mut program = Vec::new();
+        let mut functions = self.functions.clone();
+        for operation in &self.program {
+            if let Operation::Variable(Variable::Input(index)) = operation {
+                let given = of(*index);
+                program.extend_from_slice(&given.program);
+                functions = functions.or(&given.functions);
+            } else {
+                program.push(*operation);
+            }
+        }
+        let expression = Self::new(program, &functions);
+        (expression.height <= MAX_STACK).then_some(expression)
+    }
+
     /// Returns the expression with each coordinate's place in `places` as its place.
     pub(in crate::mechanism) fn with_coordinates(mut self, places: &[usize]) -> Self {
         for operation in &mut self.program {

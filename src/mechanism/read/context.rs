@@ -69,6 +69,8 @@ pub(super) struct Context<'a> {
     pub(super) inputs: NameTable<'a, usize>,
     /// Whether anything uses each input.
     pub(super) inputs_used: Vec<bool>,
+    /// Value of each input at the start.
+    pub(super) input_starts: Vec<f64>,
     /// Dimension of each input with a unit.
     pub(super) input_dimensions: Vec<Option<Dimension>>,
     /// Functions, `None` in a file without.
@@ -109,6 +111,7 @@ impl<'a> Context<'a> {
             owners: HashMap::new(),
             inputs: NameTable::new(),
             inputs_used: Vec::new(),
+            input_starts: Vec::new(),
             input_dimensions: Vec::new(),
             functions: None,
             has_functions: true,

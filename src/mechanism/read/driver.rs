@@ -21,7 +21,7 @@ table! {
     struct DriverKeys<'a> {
         /// Start value; makes the driver an FMI input [m or rad].
         start: Quantity = NUMBER,
-        /// Prescribed motion: an expression in t, or a table.
+        /// Prescribed motion: an expression in t and inputs, or a table.
         motion: ReadMotion = PrescribedMotion,
         /// Lower limit [m or rad], such as the shortest length of a cylinder.
         min: Quantity = NUMBER,
@@ -54,11 +54,15 @@ impl<'a> Context<'a> {
         let unit = kind.map(CoordinateKind::unit);
         let start = ("`start`", keys.start.value.as_ref());
         let [min, max] = self.limits([keys.min, keys.max], start, unit);
-        let source = match (keys.start.value, keys.motion.value) {
-            (Some(start), _) => DriverSource::Input {
-                start: start.value?,
-            },
-            (None, motion) => DriverSource::Motion(self.check_motion(motion?, kind, start_time)?),
+        let (source, follows) = match (keys.start.value, keys.motion.value) {
+            (Some(start), _) => {
+                let start = start.value?;
+                (DriverSource::Input { start }, None)
+            }
+            (None, motion) => {
+                let (motion, follows) = self.check_motion(motion?, kind, start_time)?;
+                (DriverSource::Motion(motion), follows)
+            }
         };
         Some(Driver {
             name: entry.name().to_owned(),
@@ -66,6 +70,7 @@ impl<'a> Context<'a> {
             coordinate: coordinate?,
             is_input: matches!(source, DriverSource::Input { .. }),
             source,
+            follows,
             min,
             max,
             wrapped,

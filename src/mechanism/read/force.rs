@@ -83,7 +83,7 @@ impl<'a> Context<'a> {
                 measure.coordinate.kind,
             )
         });
-        let inputs = self.inputs.candidates_in_order().into_iter();
+        let inputs = self.inputs.in_order().into_iter();
         let inputs = inputs.map(|(name, place)| {
             let dimension = self.input_dimensions[place];
             (name.to_owned(), Variable::Input(place), dimension)

@@ -56,6 +56,7 @@ impl<'a> Context<'a> {
             description: keys.description.value.unwrap_or_default(),
             coordinate: coordinate?,
             source,
+            follows: None,
             is_input: false,
             min: None,
             max: None,

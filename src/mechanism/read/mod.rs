@@ -128,6 +128,8 @@ impl<'a> Context<'a> {
         let functions = self.functions(root.functions.items());
         let has_freedoms = !root.freedoms.items().is_empty();
         let simulation = self.simulation(&root.simulation.or_empty(), has_freedoms);
+        let inputs = self.each(&root.inputs, Self::input);
+        self.input_starts = inputs.iter().map(|input| input.start).collect();
         let (bodies, markers) = self.bodies(&root.ground, &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let mut drivers = self.each(&root.drivers, driver);
@@ -164,7 +166,7 @@ impl<'a> Context<'a> {
             parameters,
             derivation_order,
             functions,
-            inputs: self.each(&root.inputs, Self::input),
+            inputs,
             bodies,
             markers,
             joints,

@@ -1,7 +1,9 @@
 //! Prescribed motions: expressions of time, and tables.
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::expression::MovingNames;
 use crate::mechanism::motion::not_finite;
+use crate::mechanism::syntax::Value;
 use crate::mechanism::wording::shown;
 use crate::mechanism::{
     CoordinateKind, Ends, Expression, Interpolation, Jet, Law, Motion, MotionInForce,
@@ -85,11 +87,7 @@ impl<'a> Kind<'a> for PrescribedMotion {
             let (points, interpolation, ends) = context.motion_table(keys)?;
             Course::Points(points, interpolation, ends)
         } else {
-            Course::Expression(
-                context
-                    .formula(item.value, &[Variable::Time], None)?
-                    .expression,
-            )
+            Course::Expression(context.motion_formula(item.value)?)
         };
         Some(ReadMotion {
             course,
@@ -101,6 +99,30 @@ impl<'a> Kind<'a> for PrescribedMotion {
 }
 
 impl<'a> Context<'a> {
+    /// Reads a motion by an expression in t, over parameters and inputs.
+    fn motion_formula(&mut self, value: &'a Value<'a>) -> Option<Expression> {
+        let inputs = self.inputs.in_order();
+        let of_signals = inputs.iter().filter_map(|(name, place)| {
+            let dimension = self.input_dimensions[*place]?;
+            Some((*name, dimension))
+        });
+        let moving = MovingNames {
+            known: (inputs
+                .iter()
+                .map(|(name, place)| (*name, Variable::Input(*place))))
+            .collect(),
+            dimensions: Vec::new(),
+            of_signals: of_signals.collect(),
+            computed: Vec::new(),
+            usable: "a motion may use parameters, inputs and `t`",
+            law: None,
+            may_jump: false,
+        };
+        let moving = (!inputs.is_empty()).then_some(&moving);
+        let formula = self.formula(value, &[Variable::Time], moving)?;
+        Some(formula.expression)
+    }
+
     pub(super) fn motion_table(
         &mut self,
         (point_keys, keys): (PointKeys<'a>, MotionKeys<'a>),
@@ -130,18 +152,26 @@ impl<'a> Context<'a> {
         Some((points, interpolation?, ends?))
     }
 
-    /// Refuses a motion whose value or rates at the start time are not finite, and a distance
+    /// Returns the motion, and what it follows if it uses inputs. Refuses a motion whose value or rates at the start time are not finite, and a distance
     /// that is not positive there or in the table.
     pub(super) fn check_motion(
         &mut self,
         read: ReadMotion,
         kind: Option<CoordinateKind>,
         start_time: f64,
-    ) -> Option<Motion> {
+    ) -> Option<(Motion, Option<Expression>)> {
         let ReadMotion { course, span } = read;
         let is_distance = kind == Some(CoordinateKind::Distance);
         let is_angle = kind.is_some_and(CoordinateKind::is_angle);
+        let mut follows = None;
         let motion = match course {
+            Course::Expression(expression) if expression.inputs().next().is_some() => {
+                let starts = &self.input_starts;
+                let start = |index| Expression::constant(starts.get(index).copied().unwrap_or(0.0));
+                let motion = expression.with_inputs(start)?;
+                follows = Some(expression);
+                Motion::Expression(motion)
+            }
             Course::Expression(expression) => Motion::Expression(expression),
             Course::Points(points, interpolation, ends) => {
                 if is_distance {
@@ -158,7 +188,7 @@ impl<'a> Context<'a> {
             }
         };
         if !self.knows(motion.parameters()) {
-            return Some(motion);
+            return Some((motion, follows));
         }
         let mut in_force = MotionInForce::new(&motion, self.parameter_values.len());
         in_force.set_parameters(|id| Jet::constant(self.known_value(id)));
@@ -177,6 +207,6 @@ impl<'a> Context<'a> {
             );
             self.error(code::ILLEGAL_VALUE, span, message);
         }
-        Some(motion)
+        Some((motion, follows))
     }
 }

@@ -100,7 +100,15 @@ impl<'a> Context<'a> {
                 earlier.insert(name, (noun, entry));
                 continue;
             };
-            let message = format!("the {noun} {} has the name of a {first_noun}", quoted(name));
+            let article = if first_noun.starts_with('i') {
+                "an"
+            } else {
+                "a"
+            };
+            let message = format!(
+                "the {noun} {} has the name of {article} {first_noun}",
+                quoted(name)
+            );
             self.report(
                 Diagnostic::error(code::DUPLICATE_NAME, message)
                     .label(span, "")

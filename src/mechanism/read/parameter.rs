@@ -67,6 +67,10 @@ fn synonym(text: &str) -> Option<&'static str> {
     match text {
         "J/s" => Some("W"),
         "-" => Some("1"),
+        "volt" | "Volt" => Some("V"),
+        "ampere" | "amp" => Some("A"),
+        "Ohm" | "Ω" => Some("ohm"),
+        "pascal" | "N/m2" | "N/m²" => Some("Pa"),
         _ => {
             // `Nm`, `N*m`, `m/s²`, `kg m^2`: other signs between the same letters.
             let is_meant = |name: &&str| {

@@ -492,3 +492,68 @@ motor = { coordinate = "angle", markers = ["ground.O", "arm.O"], value = "k*(sup
     let slope = 0.6 * 12.0 * 2.0 * (1.0 - lean * lean) / 1.5 / 0.025;
     assert!((space.b[(1, 1)] - slope).abs() < 1e-5, "{slope}");
 }
+
+/// A quarter of a car on a road: the damper's force follows its table over the rate of a measure, hard in
+/// rebound and soft in compression, with corners where the flow opens.
+#[test]
+fn a_quarter_car_follows_the_table_of_its_damper() {
+    let text = r#"
+format = 1
+name = "quarter_car"
+[functions]
+damper = { table = [[-1, -900], [-0.2, -420], [0, 0], [0.1, 120], [1, 300]], law = "linear", ends = "linear" }
+[ground.markers]
+G = [0, 0, "90*deg"]
+[bodies.road]
+markers = { R = [0, 0, "90*deg"] }
+[bodies.wheel]
+mass = 40
+markers = { W = [0, 0, "90*deg"] }
+[bodies.car]
+mass = 300
+markers = { C = [0, 0, "90*deg"] }
+[joints]
+of_road = { type = "translational", markers = ["ground.G", "road.R"] }
+of_wheel = { type = "translational", markers = ["ground.G", "wheel.W"] }
+of_car = { type = "translational", markers = ["ground.G", "car.C"] }
+[drivers]
+bumps = { coordinate = "x", markers = ["ground.G", "road.R"], motion = "0.02*sin(12*t)" }
+[freedoms]
+hop = { coordinate = "x", markers = ["ground.G", "wheel.W"], start = 0 }
+bounce = { coordinate = "x", markers = ["ground.G", "car.C"], start = 0 }
+[measures]
+travel = { coordinate = "x", markers = ["wheel.W", "car.C"] }
+[forces]
+tyre = { coordinate = "x", markers = ["road.R", "wheel.W"], stiffness = 150000, free = 0 }
+spring = { coordinate = "x", markers = ["wheel.W", "car.C"], stiffness = 16000, free = 0 }
+damping = { coordinate = "x", markers = ["wheel.W", "car.C"], value = "-damper(travel.velocity)" }
+[simulation]
+gravity = [0, 0]
+"#;
+    let table = [
+        [-1.0, -900.0],
+        [-0.2, -420.0],
+        [0.0, 0.0],
+        [0.1, 120.0],
+        [1.0, 300.0],
+    ];
+    let damper = |v: f64| {
+        let k = table[1..4].iter().take_while(|p| p[0] <= v).count();
+        let ([a, f], [b, g]): ([f64; 2], [f64; 2]) = (table[k], table[k + 1]);
+        f + (g - f) * (v - a) / (b - a)
+    };
+    let exact = integrated(
+        [0.0; 4],
+        |t, &[wheel, car, w, c]| {
+            let tyre = -150_000.0 * (wheel - 0.02 * (12.0 * t).sin());
+            let inside = -16_000.0 * (car - wheel) - damper(c - w);
+            [w, c, (tyre - inside) / 40.0, inside / 300.0]
+        },
+        1.0,
+        400_000,
+    );
+    let mut run = Run::new(&parse(text), TOLERANCE, Fed::default());
+    run.to(1.0);
+    let off = error(&run.state(), &exact);
+    assert!(off < MARK, "{off}: {:?} {exact:?}", run.state());
+}

@@ -53,6 +53,7 @@ fn held(mechanism: &Arc<Mechanism>) -> Mechanism {
             source: DriverSource::Input {
                 start: undriven.value,
             },
+            follows: None,
             is_input: true,
             min: None,
             max: None,

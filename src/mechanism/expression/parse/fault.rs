@@ -115,7 +115,7 @@ impl Parser<'_> {
         {
             let error = ExpressionError::new(span, format!("{} is an input", quoted(name)));
             return error.help(match self.scope.arguments {
-                [] => "only the `value` of a force may use inputs",
+                [] => "only a `motion` and the `value` of a force may use inputs",
                 _ => SEEN_BY_FUNCTIONS,
             });
         }
@@ -187,7 +187,7 @@ impl Parser<'_> {
             let coordinates = self
                 .scope
                 .moving
-                .filter(|moving| !moving.dimensions.is_empty());
+                .filter(|moving| !moving.dimensions.is_empty() || !moving.of_signals.is_empty());
             near.or_else(|| coordinates?.known.near(name, &[]))
         };
         let help = self.unit_help(name).or_else(moving).or_else(taken);
@@ -226,9 +226,8 @@ impl Parser<'_> {
     /// Returns message and help for a quantity that follows from forces, within the size of one.
     fn loop_of_forces(&self, name: &str) -> Option<(String, &'static str)> {
         let (_, part) = name.rsplit_once('.')?;
-        self.scope
-            .moving
-            .filter(|moving| !moving.of_signals.is_empty())?;
+        let moving = self.scope.moving;
+        moving.filter(|moving| moving.may_jump && !moving.of_signals.is_empty())?;
         let name = quoted(name);
         match part {
             "acceleration" | "ax" | "ay" | "alpha" => Some((

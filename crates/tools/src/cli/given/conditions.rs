@@ -74,7 +74,12 @@ impl Conditions {
             if let Some(input) = index.checked_sub(drivers).map(|k| &force_inputs[k]) {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
-                driven.give_load(input.target, size);
+                if !driven.give_load(input.target, size) {
+                    let name = &input.name;
+                    return Err(Error::Usage(format!(
+                        "--drive: the motion that follows `{name}` is nested too deeply with it"
+                    )));
+                }
                 forces_by_option.push(input.name.as_str());
                 continue;
             }
@@ -89,6 +94,7 @@ impl Conditions {
                 warn_of_degrees(DRIVE.option, text, at_start);
             }
             driven.drivers[index].source = DriverSource::Motion(motion);
+            driven.drivers[index].follows = None;
             driven_by_option.push(DriverId(index));
         }
         for (freedom, order, value) in self.starts(mechanism)? {
@@ -98,6 +104,15 @@ impl Conditions {
             Some(path) => Signals::read(path, &driven, &forces_by_option)?,
             None => Signals::default(),
         };
+        for (place, input) in driven.load_inputs().into_iter().enumerate() {
+            if let (true, Some(driver)) = (signals.has_load(place), driven.follower(input.target)) {
+                return Err(Error::Usage(format!(
+                    "driver `{}` follows the input `{}`, for which --input is not possible: give it \
+                     by --drive",
+                    driver.name, input.name
+                )));
+            }
+        }
         if let Some(driver) = driven_by_option.iter().find(|d| signals.has(**d)) {
             let name = &mechanism.drivers[driver.index()].name;
             return Err(Error::Usage(format!(

@@ -180,6 +180,14 @@ impl Given for Part<'_> {
     }
 }
 
+impl Signals {
+    /// Returns whether there is a column of a load, by its place.
+    pub(super) fn has_load(&self, place: usize) -> bool {
+        let mut targets = self.columns.iter();
+        targets.any(|(target, _)| *target == Target::Force(place))
+    }
+}
+
 impl Target {
     /// Returns the input of this name.
     fn named(name: &str, mechanism: &Mechanism) -> Option<Self> {

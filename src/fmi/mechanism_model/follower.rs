@@ -1,0 +1,112 @@
+//! Drivers whose motions follow inputs of the file.
+//!
+//! In co-simulation they move as drivers that are inputs do: towards the value for the inputs that the host
+//! sets, with rates by the parameters `rates` and `extrapolation`, and by input derivatives.
+
+use std::sync::Arc;
+
+use super::{Interface, MechanismModel};
+use crate::fmi::state::Phase;
+use crate::kinematics::{Direction, Error};
+use crate::mechanism::{
+    DriverId, DriverSource, Dual, Expression, Jet, Mechanism, Motion, Number, Order, ParameterId,
+    Variable,
+};
+
+/// Returns a mechanism whose drivers that follow inputs are given, with their values at the start.
+///
+/// # Errors
+///
+/// [`Error::FollowsInput`] in model exchange.
+pub(super) fn with_followers(
+    mechanism: Arc<Mechanism>,
+    interface: Interface,
+) -> Result<Arc<Mechanism>, Error> {
+    let mut followers = mechanism.drivers.iter();
+    let Some(first) = followers.find(|driver| driver.follows.is_some()) else {
+        return Ok(mechanism);
+    };
+    if interface == Interface::ModelExchange {
+        let driver = first.name.clone();
+        return Err(Error::FollowsInput { driver });
+    }
+    let parameters = mechanism.default_parameters();
+    let time = mechanism.simulation.start;
+    let mut given = Mechanism::clone(&mechanism);
+    for driver in &mut given.drivers {
+        if let (Some(_), DriverSource::Motion(Motion::Expression(motion))) =
+            (&driver.follows, &driver.source)
+        {
+            let start = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
+            driver.source = DriverSource::Input { start };
+        }
+    }
+    Ok(Arc::new(given))
+}
+
+impl MechanismModel {
+    /// Returns whether drivers follow inputs.
+    pub(super) fn has_followers(&self) -> bool {
+        let mut drivers = self.mechanism.drivers.iter();
+        drivers.any(|driver| driver.follows.is_some())
+    }
+
+    /// Sets the drivers that follow inputs to their values for these, as the host has set them at `time`.
+    /// Allocates nothing.
+    pub(super) fn set_followers(&mut self, time: f64) {
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            let Some(follows) = &driver.follows else {
+                continue;
+            };
+            let (parameters, loads) = (&self.course.parameters, &self.course.force_inputs);
+            let variable = |which| match which {
+                // Inputs come first among the loads.
+                Variable::Input(input) => loads[input].path(),
+                _ => Jet::variable(time),
+            };
+            let parameter = |p: ParameterId| Jet::constant(parameters[p.index()]);
+            let jet = follows.evaluate_at(&parameter, &variable);
+            let has_rates = follows.inputs().any(|input| loads[input].path().varies());
+            let input = &mut self.course.inputs[index];
+            input.set(Order::Position, jet.value);
+            if has_rates {
+                input.set_derivative(Order::Position, 1, jet.first());
+                input.set_derivative(Order::Position, 2, jet.second());
+            }
+        }
+    }
+
+    /// Adds to a direction the changes of drivers that follow inputs, along which parameters and time change
+    /// as in the direction, and inputs by `loads`.
+    pub(super) fn follow_along(&self, direction: &mut Direction, loads: &[f64], phase: Phase) {
+        if !self.has_followers() {
+            return;
+        }
+        let now = self.course.parameters.iter().zip(&direction.parameters);
+        let mut parameters: Vec<Dual> = now.map(|(&is, &by)| Dual::new(is, [by])).collect();
+        for id in &self.mechanism.derivation_order {
+            let expression: &Expression = &self.mechanism.parameters[id.index()].expression;
+            let value = |p: ParameterId| parameters[p.index()];
+            parameters[id.index()] = expression.evaluate(&value, Dual::constant(0.0));
+        }
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            let Some(follows) = &driver.follows else {
+                continue;
+            };
+            let variable = |which| match which {
+                Variable::Input(input) => {
+                    let value = self.course.force_inputs[input].present();
+                    Dual::new(value, [loads[input]])
+                }
+                _ => Dual::new(self.course.time, [direction.time]),
+            };
+            let parameter = |p: ParameterId| parameters[p.index()];
+            let change = follows.evaluate_at(&parameter, &variable).first();
+            let by = self.derivatives_by(DriverId(index), Order::Position, phase);
+            let own = &mut direction.drivers[index];
+            own.value += by[0] * change;
+            own.derivatives[0] += by[1] * change;
+            own.derivatives[1] += by[2] * change;
+        }
+    }
+}
