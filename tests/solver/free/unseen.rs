@@ -143,10 +143,10 @@ y = { coordinate = "x", markers = ["ground.S", "tap.S"], start = 0.0264, velocit
         let (sin, cos) = (30.0 * t).sin_cos();
         [0.0264 + 0.0197 * sin, 0.591 * cos, -17.73 * sin]
     };
-    for until in [0.4, 1.0] {
-        let truth = on_floor(lift, [0.0264, 0.591], 0.0, until);
-        for rows in ROWS {
-            let mut run = run(text);
+    let truths = [0.4, 1.0].map(|until| (until, on_floor(lift, [0.0264, 0.591], 0.0, until)));
+    for rows in ROWS {
+        let mut run = run(text);
+        for (until, truth) in truths {
             played(&mut run, until, rows);
             assert_near(run.state()[0], truth);
         }

@@ -176,7 +176,7 @@ fn platform(length: &str) -> String {
 /// large ratios.
 #[test]
 fn parts_that_jump_together_are_passed_anywhere() {
-    for place in 1..100 {
+    for place in (1..100).step_by(4) {
         let corner = 0.2 + 0.015 * f64::from(place);
         let length = format!("0.4 + 0.1*abs(mod(n + {:?}, 1) - 0.5)", 2.0 - corner);
         let (mut solver, _) = assembled(&parse(&platform(&length)));

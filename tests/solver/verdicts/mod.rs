@@ -193,7 +193,7 @@ fn every_mechanism_of_the_bank_gets_its_verdict() {
 
 #[test]
 fn an_arm_of_any_size_beside_it_leaves_the_verdict_the_same() {
-    for length in ["1e6", "1e3", "1e-3", "1e-7"] {
+    for length in ["1e6", "1e-7"] {
         println!("beside an arm of {length} m");
         let mut bank = bank();
         // The condition is that of the whole mechanism.
