@@ -10,9 +10,6 @@ use fuzz::mutation::{Chance, mutate};
 /// A test stops here even on a machine that is busy with other things.
 const TIME: Duration = Duration::from_secs(5);
 
-/// Generated mechanisms of each kind.
-const CASES: u64 = 3;
-
 /// All files of a folder, in order.
 fn files(folder: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
@@ -81,26 +78,22 @@ fn call_sequences() {
     );
 }
 
-/// The law of `make attack` for some mechanisms of each kind: one jump ends where tiny steps end
+/// The law of `make attack` for three mechanisms of each kind: one jump ends where tiny steps end
 /// and comes back, and other scales, names, orders and places change neither verdict nor branch,
 /// nor the sub-steps by much.
 #[test]
 fn generated_mechanisms_move_alike_in_any_steps_and_however_they_are_written() {
     let mut agree = 0;
     for (kind, (name, _)) in fuzz::attack::KINDS.iter().enumerate() {
-        for (variant, cases) in [
-            (Variant::Fixed, CASES),
-            (Variant::Moving, 1),
-            (Variant::Rough, 1),
-        ] {
-            let counts = fuzz::attack::run((kind, variant), 1, cases, |seed, words| {
+        for variant in [Variant::Fixed, Variant::Moving, Variant::Rough] {
+            let counts = fuzz::attack::run((kind, variant), 1, 1, |seed, words| {
                 panic!("{name}, {variant:?}, seed {seed}: {words}");
             });
             agree += counts.agree;
         }
     }
     // Not all of them close.
-    assert!(agree as usize > 2 * fuzz::attack::KINDS.len(), "{agree}");
+    assert!(agree as usize > fuzz::attack::KINDS.len(), "{agree}");
 }
 
 /// Tries one case of a kind by the law of `make attack`.
