@@ -355,6 +355,6 @@ fn derivatives_of_what_follows_an_input_are_those_of_differences() {
 #[test]
 fn following_an_input_is_refused_in_model_exchange() {
     let refused = MechanismModel::new(slider(FOLLOWING), Interface::ModelExchange);
-    let error = refused.err().expect("no rates").to_string();
+    let error = refused.map(|_| ()).expect_err("no rates").to_string();
     assert!(error.starts_with("driver `x` follows an input"), "{error}");
 }

@@ -246,10 +246,10 @@ fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     // Rows [lower, diagonal, upper, side]: h s₋ + 2 (h + h₋) s + h₋ s₊ = 3 (h d₋ + h₋ d), with the widths
     // h and chords d before and behind a point.
     let mut rows: Vec<[f64; 4]> = vec![[0.0; 4]; segments + 1];
-    for k in 1..segments {
+    for (k, row) in rows.iter_mut().enumerate().take(segments).skip(1) {
         let [before, after] = [width(k - 1), width(k)];
         let side = 3.0 * (after * chord(k - 1) + before * chord(k));
-        rows[k] = [after, 2.0 * (before + after), before, side];
+        *row = [after, 2.0 * (before + after), before, side];
     }
     let end = |[h, next]: [f64; 2], [d, d_next]: [f64; 2]| {
         let side = ((h + 2.0 * (h + next)) * next * d + h * h * d_next) / (h + next);

@@ -31,7 +31,7 @@ enum MovingCurve {
     Expression(Expression),
     Points {
         table: Table,
-        points: ClosedPoints<Enclosed>,
+        points: Box<ClosedPoints<Enclosed>>,
     },
 }
 
@@ -43,7 +43,7 @@ impl ProfileInForce {
             Curve::Expression { expression, .. } => MovingCurve::Expression(expression.clone()),
             Curve::Points { table, points } => MovingCurve::Points {
                 table: table.clone(),
-                points: points.moving(),
+                points: Box::new(points.moving()),
             },
         };
         MovingProfile {

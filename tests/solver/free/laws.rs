@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use biela::kinematics::Direction;
-use biela::mechanism::{DriverId, Mechanism, Source};
+use biela::mechanism::{Mechanism, Source};
 
 use super::run::{Fed, Run, error};
 use crate::common::parse;
@@ -84,7 +84,7 @@ spring = { table = [[-0.3, -120], [0, 0], [0.3, 90]], law = "linear", ends = "li
     let line = |points: &[[f64; 2]], x: f64| {
         let last = points.len() - 2;
         let k = points[1..=last].iter().take_while(|p| p[0] <= x).count();
-        let ([a, f], [b, g]) = (points[k].into(), points[k + 1].into());
+        let ([a, f], [b, g]) = (points[k], points[k + 1]);
         f + (g - f) * (x - a) / (b - a)
     };
     let exact = integrated(
@@ -416,9 +416,10 @@ fn changes_of_the_motion_agree_with_differences() {
         run.to(0.5);
         run.state()
     });
-    for k in 0..2 {
-        let difference = (ends[1][k] - ends[0][k]) / 2e-3;
-        let exact = varied[0].drivers[DriverId(k).index()].value;
+    let [before, after] = ends;
+    for (k, driver) in varied[0].drivers.iter().enumerate() {
+        let difference = (after[k] - before[k]) / 2e-3;
+        let exact = driver.value;
         assert!((difference - exact).abs() < 1e-7, "{exact} {difference}");
     }
 }
