@@ -11,10 +11,10 @@ MECHANISMS = sorted((ROOT / "mechanisms").glob("*.toml"))
 
 
 def small_motion(mechanism, t):
-    """Returns motions of all inputs by a few hundredths of a radian or of their length, with rates
+    """Returns motions of all inputs and freedoms by a few hundredths of a radian or of their length, with rates
     that do not vanish."""
     drive = {}
-    for place, driver in enumerate(mechanism.drivers.values()):
+    for place, driver in enumerate([*mechanism.drivers.values(), *mechanism.freedoms.values()]):
         if driver.start is None:
             continue
         size = 0.03 if driver.unit == "rad" else 0.01 * max(abs(driver.start), 0.01)

@@ -49,9 +49,8 @@ class Arguments:
         self.rng, self.mechanism = rng, mechanism
         owners = {variable.rpartition(".")[0] for variable in mechanism.variables} - {""}
         self.variable_names = [*mechanism.variables, *owners]
-        self.starts = [f"{name}.{rate}" for name in mechanism.drivers for rate in ("position", "velocity")]
-        sizes = [name for name in mechanism.variables if name.endswith((".effort", ".fx"))]
-        self.moved = [*mechanism.drivers, *mechanism.drivers, *sizes]
+        self.starts = [f"{name}.{rate}" for name in mechanism.freedoms for rate in ("position", "velocity")]
+        self.moved = [*mechanism.drivers, *mechanism.freedoms, *mechanism.inputs]
         self.count = int(rng.integers(1, 6))
 
     def or_odd(self, value):
@@ -124,6 +123,7 @@ def calls(a, folder):
         "sweep": lambda: own.sweep(a.swept(), a.times(), a.drive(), a.variables(), False, a.drive()),
         "range": lambda: own.range(driver(), a.start(), a.parameters()),
         "modes": lambda: own.modes(a.start(), a.parameters()),
+        "balance": lambda: own.balance(a.start(), a.parameters(), a.flag()),
         "linearize": lambda: own.linearize(a.start(), a.parameters(), a.variables(), a.flag()),
         "draw": lambda: own.draw(
             a.start(), a.parameters(), poses=a.or_odd(2), driver=chosen(a.rng, [None, driver()]),

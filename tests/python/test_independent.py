@@ -159,8 +159,9 @@ def span(mechanism, driver):
 
 
 def inputs(mechanism):
-    """Returns the drivers whose motion the file does not prescribe."""
-    return [driver for driver in mechanism.drivers.values() if driver.start is not None]
+    """Returns the drivers whose motion the file does not prescribe, and the freedoms."""
+    coordinates = [*mechanism.drivers.values(), *mechanism.freedoms.values()]
+    return [driver for driver in coordinates if driver.start is not None]
 
 
 def lively(mechanism):
@@ -242,4 +243,4 @@ def test_motions_and_gradients_next_to_dead_points(mechanism, name):
     assert end.kind == "singular"
     drive = {driver.name: (np.full(2, driver.start), 1.0, 0.3) for driver in others}
     drive[first.name] = (end.value + NEAR_END * (first.start - end.value), 0.7, -0.4)
-    check(moved, TIMES[:2], {name: np.broadcast_arrays(*drive[name]) for name in moved.drivers})
+    check(moved, TIMES[:2], {name: np.broadcast_arrays(*drive[name]) for name in {**moved.drivers, **moved.freedoms}})

@@ -31,11 +31,13 @@ if TYPE_CHECKING:
         UsageError,
     )
     from .synthesis import Fit, Target, fit, points
-    from .mechanism import Driver, Mechanism, Parameter, check, load, loads
+    from .mechanism import Mechanism, check, load, loads
+    from .parts import Driver, Event, Force, Freedom, Input, Measure, Parameter
     from .results import (
         ChangePoint,
         Drawing,
         End,
+        Equilibrium,
         Extreme,
         Gradient,
         Mode,
@@ -55,11 +57,17 @@ __all__ = [
     "Drawing",
     "Driver",
     "End",
+    "Equilibrium",
     "Error",
+    "Event",
     "Extreme",
     "FileError",
     "Fit",
+    "Force",
+    "Freedom",
     "Gradient",
+    "Input",
+    "Measure",
     "Mechanism",
     "MechanismError",
     "MechanismWarning",
@@ -87,7 +95,7 @@ __all__ = [
     "tolerance",
 ]
 
-_MODULES = "errors", "results", "mechanism", "synthesis", "tolerances"
+_MODULES = "errors", "parts", "results", "mechanism", "synthesis", "tolerances"
 """Modules that define these names. They are imported when a name is needed: the program needs none,
 and no NumPy, which all but the first import."""
 

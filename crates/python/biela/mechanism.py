@@ -7,7 +7,6 @@ import os
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +27,7 @@ from .arguments import (
     start_of,
 )
 from .errors import (
+    AssemblyError,
     Diagnostic,
     FileError,
     MechanismWarning,
@@ -37,10 +37,21 @@ from .errors import (
     diagnostics,
 )
 from .optional import needed
+from .parts import (
+    Driver,
+    Force,
+    Freedom,
+    Input,
+    Measure,
+    Parameter,
+    SweepEvents,
+    events_of,
+)
 from .results import (
     ChangePoint,
     Drawing,
     End,
+    Equilibrium,
     Extreme,
     Mode,
     Modes,
@@ -54,37 +65,6 @@ from .results import (
 
 CHUNKS = 100
 """Number of parts of a long sweep, after each of which the progress is shown."""
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """Parameter of a mechanism, in SI units."""
-
-    name: str
-    description: str
-    value: float
-    unit: str
-    min: float | None
-    max: float | None
-    tolerance: float | None
-    """Largest deviation of the real value."""
-    derived: bool
-    """Whether the value follows from other parameters and cannot be set."""
-
-
-@dataclass(frozen=True)
-class Driver:
-    """Driver of a mechanism, in SI units."""
-
-    name: str
-    description: str
-    unit: str
-    start: float | None
-    """Value at the start; `None` for a prescribed motion."""
-    min: float | None
-    max: float | None
-    wrapped: bool
-    """Whether values mean angles modulo one turn."""
 
 
 @contextmanager
@@ -168,7 +148,52 @@ class Mechanism:
     @property
     def drivers(self) -> dict[str, Driver]:
         """Drivers by name."""
-        return {row[0]: Driver(*row) for row in self._inner.drivers}
+        return {row[0]: Driver(*row[:-1]) for row in self._inner.drivers if row[-1] is None}
+
+    @property
+    def freedoms(self) -> dict[str, Freedom]:
+        """Freedoms by name."""
+        rows = [row for row in self._inner.drivers if row[-1] is not None]
+        return {row[0]: Freedom(*row[:4], row[-1]) for row in rows}
+
+    @property
+    def inputs(self) -> dict[str, Input]:
+        """Forces whose sizes a run may give, by the names that they have there."""
+        return {row[0]: Input(*row[:3]) for row in self._inner.inputs}
+
+    @property
+    def measures(self) -> dict[str, Measure]:
+        """Measures by name, with their values at the start.
+
+        >>> print(round(four_bar.measures["transmission"].value, 6))
+        1.420228
+        """
+        rows = self._inner.measures
+        values = self._at_start([row[3] for row in rows])
+        return {row[0]: Measure(*row, values.get(row[3])) for row in rows}
+
+    @property
+    def forces(self) -> dict[str, Force]:
+        """Forces that follow from the motion, by the names of their variables, with their sizes at the
+        start."""
+        rows = self._inner.forces
+        values = self._at_start([row[0] for row in rows])
+        return {row[0]: Force(*row[:3], values.get(row[0])) for row in rows}
+
+    def _at_start(self, variables: Sequence[str]) -> dict[str, float]:
+        """Returns values at the start: none where the mechanism does not get there."""
+        known = [name for name in variables if name in self.variables]
+        names, _, indices = self._chosen(known)
+        try:
+            raw = self._inner.run(self._start(None), [], indices, [])
+        except AssemblyError:
+            return {}
+        return dict(zip(names, raw.take_values().tolist()))
+
+    @property
+    def _coordinates(self) -> list[str]:
+        """Names of drivers and freedoms, in the order of the file."""
+        return [row[0] for row in self._inner.drivers]
 
     @property
     def bodies(self) -> list[str]:
@@ -211,7 +236,8 @@ class Mechanism:
         Without `t` the times are those of the file, or there is no time if `drive` has arrays with
         rates or single poses are wanted. Each driver moves as `drive` says; the others follow the
         prescribed motions of the file, or stay at their start values; freedoms move by the forces.
-        Samples without rates are differentiated. The mechanism starts in the assembly mode of its
+        Samples without rates are differentiated. Free motion begins at the start of the file, whatever
+        the first time. The mechanism starts in the assembly mode of its
         file and stays on the continuous motion. `inputs` are further entries of `drive`, such as
         `{"motor.effort": "2*sin(t)"}`.
 
@@ -248,6 +274,7 @@ class Mechanism:
             by,
             raw.take_gradient().reshape(rows, len(by), len(names)),
             self._moving(motions[1]),
+            tuple(event for _, event in events_of(raw.events(), self._inner.force_names)),
         )
         for notice in raw.notices:
             warnings.warn(notice, MechanismWarning, stacklevel=2)
@@ -269,7 +296,7 @@ class Mechanism:
         Arrays of any one shape, which single values fit. Each variant starts from the file's own
         pose and is followed on its continuous motion, as in `run`. A variant that does not
         assemble, or stops, is no error: `reason` tells why, and its values are not numbers from
-        there on. `progress` shows a bar (tqdm).
+        there on. `parameters` may have starts of freedoms too, such as `swing.velocity`. `progress` shows a bar (tqdm).
 
         The values do not depend on the number of cores or on the order of the variants.
 
@@ -301,6 +328,7 @@ class Mechanism:
         values = np.empty((count, len(names), len(motions[0])))
         rows = np.empty(count, dtype=int)
         reasons: dict[int, str] = {}
+        events = SweepEvents(self._inner.force_names)
         bar = _progress_bar(count) if progress else None
         size = max(1, -(-count // CHUNKS)) if bar is not None else max(1, count)
         # Without a variant the names are checked all the same.
@@ -316,21 +344,23 @@ class Mechanism:
             values[part] = raw.take_values().reshape(part.stop - first, *values.shape[1:])
             rows[part] = raw.rows
             reasons.update((first + index, reason) for index, reason in raw.reasons)
+            events.add(first, raw.events())
             if bar is not None:
                 bar.update(part.stop - first)
         if bar is not None:
             bar.close()
-        known = self.parameters
+        known = {**self.variables, **{name: p.unit for name, p in self.parameters.items()}}
         return Sweep(
             np.asarray(motions[0]),
             not is_timeless(t, drive),
             dict(zip(names, units)),
             series,
-            {name: known[name].unit for name in series},
+            {name: known[name] for name in series},
             shape,
             values,
             rows,
             reasons,
+            events,
         )
 
     def range(
@@ -380,7 +410,8 @@ class Mechanism:
 
         With `balance` the mechanism goes to the stable equilibrium downhill from there first.
         Closed contacts and friction that sticks hold their coordinates in these equations: a
-        warning tells each, and `held` has them.
+        warning tells each, and `held` has them. Another one tells each freedom that `drive` moves, whose
+        states are taken away.
         `variables` narrows the outputs, as for `run`.
 
         >>> space = pendulum.linearize(balance=True, variables=["rod.phi"])
@@ -388,11 +419,20 @@ class Mechanism:
         [5.424942 5.424942]
         """
         names, _, indices = self._chosen(variables)
+        start = self._start(drive)
         drivers, q, states, inputs, matrices, held = self._inner.linearize(
-            self._start(drive), given_values(parameters), indices, balance
+            start, given_values(parameters), indices, balance
         )
         for _, _, text in held:
             notice = f"{text}: what is held does not move in these equations"
+            warnings.warn(notice, MechanismWarning, stacklevel=2)
+        driven = [name for name, _ in start[1] if name in self.freedoms]
+        taken = [f"{name}.{rate}" for name in driven for rate in ("position", "velocity")]
+        for name in driven:
+            notice = (
+                f"`drive` moves freedom `{name}`, which has no states then; "
+                f"`parameters` sets its start: `{name}.position`"
+            )
             warnings.warn(notice, MechanismWarning, stacklevel=2)
         shapes = [(len(rows), len(columns)) for rows in (states, names) for columns in (states, inputs)]
         return StateSpace(
@@ -400,10 +440,34 @@ class Mechanism:
             tuple(inputs),
             tuple(names),
             *(np.reshape(matrix, shape) for matrix, shape in zip(matrices, shapes)),
-            dict(zip(self.drivers, drivers)),
+            dict(zip(self._coordinates, drivers)),
             dict(zip(self.bodies, np.reshape(q, (-1, 3)))),
             {name: force for name, force, _ in held},
+            tuple(taken),
         )
+
+    def balance(
+        self, drive: Drive | None = None, parameters: Parameters | None = None, all: bool = False
+    ) -> Equilibrium | tuple[Equilibrium, ...]:
+        """Finds the stable equilibrium downhill from the start, with all inputs held.
+
+        With `all` the equilibria downhill from places all over the range of the freedoms, of which
+        there may be others. Friction that sticks at the start holds there while it suffices.
+
+        >>> print(round(abs(pendulum.balance(parameters={"swing.position": 1.0}).values["swing"]), 9))
+        0.0
+        """
+        rows = self._inner.balance(self._start(drive), given_values(parameters), bool(all))
+        found = tuple(
+            Equilibrium(
+                dict(zip(self._coordinates, values)),
+                dict(zip(self.bodies, np.reshape(q, (-1, 3)))),
+                {name: force for name, force, _ in held},
+                tuple(left_out),
+            )
+            for values, q, held, left_out in rows
+        )
+        return found if all else found[0]
 
     def draw(
         self,

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from . import _biela, charts, tables
 from .errors import Diagnostic, UnknownNameError, UsageError
+from .optional import needed
+from .parts import Event
 
 if TYPE_CHECKING:
     import pandas
@@ -46,7 +48,7 @@ class Result(Mapping):
     Values are in SI units; `units` tells which.
     """
 
-    def __init__(self, raw, run, t, timed, units, values, by, gradient, moving):
+    def __init__(self, raw, run, t, timed, units, values, by, gradient, moving, events):
         self._raw = raw
         self._run = run
         self.t: NDArray = t
@@ -62,6 +64,8 @@ class Result(Mapping):
         """Derivatives of the variables by parameters: `gradient[variable, parameter]`."""
         self.stopped: str | None = raw.stop
         """Reason why the motion ends early; `None` for a whole motion."""
+        self.events: tuple[Event, ...] = events
+        """Events of the free motion, such as impacts, in the order of time."""
 
     def __getitem__(self, name: str) -> NDArray:
         if name == "time":
@@ -207,7 +211,9 @@ class Sweep(Mapping):
     Each array has the shape of the swept parameters, then one axis over time.
     """
 
-    def __init__(self, t, timed, units, parameters, parameter_units, shape, values, rows, reasons):
+    def __init__(
+        self, t, timed, units, parameters, parameter_units, shape, values, rows, reasons, events
+    ):
         self.t: NDArray = t
         """Times [s]; those of the start for poses without times."""
         self.timed: bool = timed
@@ -224,6 +230,7 @@ class Sweep(Mapping):
         self.rows: NDArray = rows.reshape(shape)
         """Number of rows that each variant reached."""
         self._reasons = reasons
+        self._events = events
 
     @property
     def ok(self) -> NDArray:
@@ -238,8 +245,20 @@ class Sweep(Mapping):
     @property
     def reasons(self) -> dict[tuple[int, ...], str]:
         """Reasons of all variants that stopped, by their indices."""
-        place = lambda flat: tuple(int(i) for i in np.unravel_index(flat, self.shape))
-        return {place(flat): reason for flat, reason in self._reasons.items()}
+        return {self._place(flat): reason for flat, reason in self._reasons.items()}
+
+    @property
+    def events(self) -> dict[tuple[int, ...], tuple[Event, ...]]:
+        """Events of the free motions of all variants that have some, by their indices."""
+        return {self._place(flat): events for flat, events in self._events.by_variant().items()}
+
+    def _named(self, swept: dict[str, Any]) -> dict[str, Any]:
+        """Returns what is swept by its name in tables, where starts stand beside their variables."""
+        return {f"start.{name}" if name in self.units else name: value for name, value in swept.items()}
+
+    def _place(self, flat: int) -> tuple[int, ...]:
+        """Returns the indices of a variant."""
+        return tuple(int(i) for i in np.unravel_index(flat, self.shape)) if self.shape else ()
 
     def __getitem__(self, name: str) -> NDArray:
         if name not in self._places:
@@ -259,18 +278,20 @@ class Sweep(Mapping):
         """
         rows = tables.rows_index(self.t, self.timed)
         values = np.moveaxis(self._values, 1, 2).reshape(-1, len(self.units))
-        index = tables.variants_index(self.parameters, rows)
+        index = tables.variants_index(self._named(self.parameters), rows)
         return tables.frame(values, index, self.units)
 
     def to_xarray(self) -> xarray.Dataset:
         """Returns the motions as an `xarray.Dataset`, over the axes of the variants and `time`, or
         `pose` for poses without times.
 
-        An axis along which one parameter varies alone has its name and its values; the others are
-        called `variant`, and their parameters are coordinates.
+        An axis along which one parameter varies alone has its name and its values, the start of a
+        freedom with `start.` before it; the others are called `variant`, and their parameters are
+        coordinates.
         """
-        axes = tables.sweep_dimensions(self.parameters, self.shape)
-        coordinates = tables.sweep_coordinates(self.parameters, self._parameter_units, axes)
+        parameters, units = self._named(self.parameters), self._named(self._parameter_units)
+        axes = tables.sweep_dimensions(parameters, self.shape)
+        coordinates = tables.sweep_coordinates(parameters, units, axes)
         return tables.dataset(self.t, self.timed, self, self.units, axes, coordinates)
 
     def __repr__(self) -> str:
@@ -367,9 +388,24 @@ class Modes:
 
 
 @dataclass(frozen=True)
+class Equilibrium:
+    """Stable equilibrium of a mechanism with freedoms."""
+
+    values: dict[str, float]
+    """Values of drivers and freedoms [m or rad]."""
+    poses: dict[str, NDArray]
+    """Pose of each body: x, y, phi."""
+    held: dict[str, float]
+    """Contacts that push and friction that holds, with the force along the coordinate of each [N or
+    N m]."""
+    left_out: tuple[str, ...]
+    """Friction that does not suffice on the way: the equilibrium is that of all other forces."""
+
+
+@dataclass(frozen=True)
 class StateSpace:
     """Linear equations of small free motions about a pose: dx/dt = A x + B u, y = C x + D u in SI
-    units. `control.ss(*space.matrices)` takes them."""
+    units."""
 
     states: tuple[str, ...]
     """Names of the states: value and velocity of each freedom."""
@@ -388,6 +424,23 @@ class StateSpace:
     held: dict[str, float]
     """Closed contacts and friction that sticks, with the force along the coordinate that each holds
     [N or N m]: what is held does not move in these equations."""
+    taken: tuple[str, ...] = ()
+    """Names of the states of freedoms that `drive` moves, which are no states here."""
+
+    def to_control(self):
+        """Returns the equations as a `control.StateSpace` with the names of states, inputs and outputs,
+        in which it permits no dots: `swing_position`.
+
+        Needs the package control.
+        """
+        control = needed("control", "to_control")
+        plain = lambda names: [name.replace(".", "_") for name in names]
+        return control.ss(
+            *self.matrices,
+            states=plain(self.states),
+            inputs=plain(self.inputs),
+            outputs=plain(self.outputs),
+        )
 
     @property
     def matrices(self) -> tuple[NDArray, NDArray, NDArray, NDArray]:

@@ -278,7 +278,7 @@ class Problem:
 
     def driver(self, name: str):
         """Returns the driver of a name."""
-        drivers = self.mechanism.drivers
+        drivers = {**self.mechanism.drivers, **self.mechanism.freedoms}
         if name not in drivers:
             raise UsageError(f"target: {_biela.unknown_name('driver', name, list(drivers))}")
         return drivers[name]

@@ -109,7 +109,8 @@ def tolerance(
 ) -> Tolerances:
     """Finds the deviations of a motion for deviations of parameters.
 
-    `tolerances` are by the parameters' names [SI], by default those of the file. `corners` also
+    `tolerances` are by the names of parameters and of starts of freedoms, such as `swing.velocity`
+    [SI], by default those of the file. `corners` also
     runs all corners of the box of tolerances; `samples` is the number of random variants to run.
 
     >>> found = tolerance(four_bar, drive={"crank_angle": [1.0]}, corners=True,
@@ -136,7 +137,7 @@ def tolerance(
     worst = deviations.sum(axis=1)
     statistical = np.sqrt((deviations**2).sum(axis=1))
     given = given_values(parameters)
-    values = dict(zip(known, mechanism._inner.values(given)))
+    values = dict(mechanism._inner.values(given))
     nominal = np.array([values[name] for name in names])
 
     def variants(factors: NDArray) -> Sweep:

@@ -6,6 +6,7 @@
 //! | `call` | the work of a call: without the interpreter's lock, until Ctrl-C; panics as errors |
 //! | `scenario` | parameters, and motions of drivers as samples |
 //! | `runner` | a mechanism that moves along samples |
+//! | `events` | events of free motions as columns |
 //! | `run`, `film` | one motion with its gradients; its animation |
 //! | `sweep` | the same motion of many variants, on all cores |
 //! | `timing`, `follower` | drivers whose values are free; a mechanism that follows targets |
@@ -17,6 +18,7 @@
 mod attempt;
 mod call;
 mod error;
+mod events;
 mod film;
 mod fit;
 mod follower;

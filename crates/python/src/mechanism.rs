@@ -19,29 +19,18 @@ use crate::error::{Failure, exception};
 use crate::fit::Targets;
 use crate::follower::{Fit, Target};
 use crate::rows::{
-    DriverRow, ParameterRow, Problem, RangeRow, driver_row, parameter_row, problems, range_row,
+    DriverRow, EquilibriumRow, LinearRow, NamedRow, ParameterRow, Problem, RangeRow, driver_row,
+    equilibrium_row, forces, inputs, linear_row, measures, parameter_row, problems, range_row,
 };
 use crate::run::{Run, run};
 use crate::runner::Runner;
 use crate::scenario::{Drive, Home, Scenario, Value, parameter, parameters, take_starts};
-use crate::sweep::{Sweep, sweep};
+use crate::sweep::{Quantity, Sweep, Variants};
 use crate::timing::FreeDriver;
 
 /// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
 /// these are all.
 type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
-/// Name, force and description of what holds a coordinate.
-type HeldRow = (String, f64, String);
-/// Values of drivers, q, names of states and of inputs, A, B, C and D by rows, and what holds.
-type LinearRow = (
-    Vec<f64>,
-    Vec<f64>,
-    Vec<String>,
-    Vec<String>,
-    [Vec<f64>; 4],
-    Vec<HeldRow>,
-);
-
 /// Times, and motions of drivers.
 type Motions = (Vec<f64>, Vec<(String, Drive)>);
 
@@ -152,9 +141,32 @@ impl Mechanism {
         self.model.parameters.iter().map(parameter_row).collect()
     }
 
+    /// Returns the drivers and the freedoms.
     #[getter]
     fn drivers(&self) -> Vec<DriverRow> {
         self.model.drivers.iter().map(driver_row).collect()
+    }
+
+    #[getter]
+    fn inputs(&self) -> Vec<NamedRow> {
+        inputs(&self.model)
+    }
+
+    #[getter]
+    fn forces(&self) -> Vec<NamedRow> {
+        forces(&self.model)
+    }
+
+    #[getter]
+    fn measures(&self) -> Vec<NamedRow> {
+        measures(&self.model)
+    }
+
+    /// Returns the names of all forces, by their index in events.
+    #[getter]
+    fn force_names(&self) -> Vec<String> {
+        let forces = self.model.forces.iter();
+        forces.map(|force| force.name.clone()).collect()
     }
 
     #[getter]
@@ -178,9 +190,24 @@ impl Mechanism {
         (simulation.start, simulation.stop, simulation.step)
     }
 
-    /// Returns the values of all parameters \[SI\] where some are set, in the order of `parameters`.
-    fn values(&self, parameters: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
-        self.in_force(parameters)
+    /// Returns the values of all parameters and of the starts of freedoms \[SI\] where some are set.
+    fn values(&self, mut set: Vec<(String, Value)>) -> Result<Vec<(String, f64)>, Failure> {
+        let starts = take_starts(&self.model, &mut set)?;
+        let parameters = parameters(&self.model, set)?;
+        let names = self.model.parameters.iter().map(|p| p.name.clone());
+        let freedoms = self.model.starts_of_freedoms().into_iter();
+        let freedoms = freedoms.map(|(name, freedom, order)| {
+            let set = starts
+                .iter()
+                .find(|start| (start.0, start.1) == (freedom, order));
+            let driver = &self.model.drivers[freedom.index()];
+            let own = match order {
+                Order::Position => driver.start().unwrap_or(f64::NAN),
+                Order::Velocity | Order::Acceleration => driver.start_velocity(),
+            };
+            (name, set.map_or(own, |start| start.2))
+        });
+        Ok(names.zip(parameters).chain(freedoms).collect())
     }
 
     /// Runs the mechanism; `columns` are indices, `by` names of parameters.
@@ -193,10 +220,7 @@ impl Mechanism {
         by: Vec<String>,
     ) -> Result<Run, Failure> {
         apart(py, || {
-            let mut scenario = self.scenario(motions)?;
-            let mut parameters = parameters;
-            scenario.set_starts(&take_starts(&self.model, &mut parameters)?);
-            let parameters = self.in_force(parameters)?;
+            let (scenario, parameters) = self.set(motions, parameters)?;
             let by = by.iter().map(|name| self.direction(name));
             let by: Vec<_> = by.collect::<Result<_, _>>()?;
             let told = self.all_columns().iter().filter(|column| column.is_told());
@@ -217,13 +241,18 @@ impl Mechanism {
     ) -> Result<Sweep, Failure> {
         let cores = Cores::of_process(py)?;
         apart(py, || {
-            let scenario = self.scenario(motions)?;
-            let parameters = self.in_force(parameters)?;
+            let (scenario, parameters) = self.set(motions, parameters)?;
             let swept = swept.into_iter();
-            let swept = swept.map(|(name, values)| Ok((self.free(&name)?, values)));
+            let swept = swept.map(|(name, values)| Ok((self.quantity(&name)?, values)));
             let swept: Vec<_> = swept.collect::<Result<_, Failure>>()?;
-            let columns = self.chosen(&columns);
-            cores.run(|stop| sweep(&scenario, &parameters, &swept, variants, &columns, stop))
+            let variants = Variants {
+                scenario: &scenario,
+                parameters: &parameters,
+                swept: &swept,
+                count: variants,
+                columns: &self.chosen(&columns),
+            };
+            cores.run(|stop| variants.run(stop))
         })
     }
 
@@ -291,7 +320,7 @@ impl Mechanism {
         attempt: &Attempt,
         names: Vec<String>,
     ) -> Result<String, Failure> {
-        apart(py, || self.text_at(&names, &attempt.home()))
+        apart(py, || self.text_at(&names, (&attempt.home(), |_| None)))
     }
 
     /// Finds the range of a driver from the start of a motion.
@@ -303,10 +332,10 @@ impl Mechanism {
         parameters: Vec<(String, Value)>,
     ) -> Result<RangeRow<'py>, Failure> {
         let (id, range) = apart(py, || {
-            let scenario = self.scenario(motions)?;
+            let (scenario, parameters) = self.set(motions, parameters)?;
             let id = self.driver_named(driver)?;
             let mut runner = Runner::new(&scenario, &[])?;
-            runner.start(&self.in_force(parameters)?)?;
+            runner.start(&parameters)?;
             Ok((
                 id,
                 runner.motion.solver.range(id, &RangeSettings::default()),
@@ -323,9 +352,9 @@ impl Mechanism {
         parameters: Vec<(String, Value)>,
     ) -> Result<ModesRow, Failure> {
         apart(py, || {
-            let scenario = self.scenario(motions)?;
+            let (scenario, parameters) = self.set(motions, parameters)?;
             let mut runner = Runner::new(&scenario, &[])?;
-            runner.start(&self.in_force(parameters)?)?;
+            runner.start(&parameters)?;
             let modes = runner.motion.solver.modes()?;
             let count = 3 * self.model.bodies.len();
             let others = modes.others.into_iter();
@@ -334,9 +363,7 @@ impl Mechanism {
         })
     }
 
-    /// Linearizes the free motion at the start of a motion, or at the equilibrium downhill from it;
-    /// returns the drivers' values, q, the names of states and inputs, A, B, C and D by rows, and name, force
-    /// and description of what holds.
+    /// Linearizes the free motion at the start of a motion, or at the equilibrium downhill from it.
     fn linearize(
         &self,
         py: Python<'_>,
@@ -346,28 +373,32 @@ impl Mechanism {
         balance: bool,
     ) -> Result<LinearRow, Failure> {
         apart(py, || {
-            let scenario = self.scenario(motions)?;
-            let all = self.all_columns();
-            let outputs: Vec<Output> = columns.iter().map(|index| all[*index].clone()).collect();
+            let (scenario, parameters) = self.set(motions, parameters)?;
+            let outputs = self.chosen(&columns);
             let mut runner = Runner::new(&scenario, &outputs)?;
-            runner.start(&self.in_force(parameters)?)?;
+            runner.start(&parameters)?;
             let space = runner.linearize(&outputs, balance)?;
-            let matrices = space.matrices().map(|rows| rows.concat());
-            let held = space.held.iter().map(|held| {
-                let mechanism = runner.motion.solver.mechanism();
-                let name = held.name(mechanism).to_owned();
-                (name, held.size, held.describe(mechanism))
-            });
-            let held = held.collect();
-            let pose = runner.motion.solver.pose();
-            Ok((
-                pose.drivers.clone(),
-                pose.q[..3 * self.model.bodies.len()].to_vec(),
-                space.states,
-                space.inputs,
-                matrices,
-                held,
-            ))
+            Ok(linear_row(space, runner.motion.pose(), &self.model))
+        })
+    }
+
+    /// Finds the equilibrium downhill from the start of a motion, or with `all` those downhill from
+    /// places all over the range of the freedoms.
+    fn balance(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        all: bool,
+    ) -> Result<Vec<EquilibriumRow>, Failure> {
+        apart(py, || {
+            let (scenario, parameters) = self.set(motions, parameters)?;
+            let mut runner = Runner::new(&scenario, &[])?;
+            runner.start(&parameters)?;
+            let found = runner.balance(all)?.into_iter();
+            Ok(found
+                .map(|equilibrium| equilibrium_row(equilibrium, &self.model))
+                .collect())
         })
     }
 
@@ -383,7 +414,7 @@ impl Mechanism {
     ) -> Result<String, Failure> {
         let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
         apart(py, || {
-            let scenario = self.scenario(motions)?;
+            let (scenario, parameters) = self.set(motions, parameters)?;
             let columns = self.all_columns().iter();
             let columns: Vec<Output> = columns
                 .filter(|c| forces && c.is_force())
@@ -395,7 +426,7 @@ impl Mechanism {
                 return Err(Failure::Usage(message.to_owned()));
             }
             let mut runner = Runner::new(&scenario, &columns)?;
-            runner.start(&self.in_force(parameters)?)?;
+            runner.start(&parameters)?;
             let driver = driver.map(|name| self.driver_named(&name)).transpose()?;
             let followed = driver.map(|driver| Followed {
                 driver,
@@ -431,18 +462,22 @@ impl Mechanism {
     ) -> Result<String, Failure> {
         apart(py, || {
             let names: Vec<String> = parameters.iter().map(|(name, _)| name.clone()).collect();
-            let scenario = self.scenario(motions)?;
+            let (scenario, parameters) = self.set(motions, parameters)?;
             let mut pose = scenario.home.0.clone();
             match estimates {
                 Some(q) => pose.q[..q.len()].copy_from_slice(&q),
                 None => {
                     let mut runner = Runner::new(&scenario, &[])?;
-                    let values = self.in_force(parameters)?;
-                    runner.start(&values)?;
-                    pose = runner.motion.solver.pose().clone();
+                    runner.start(&parameters)?;
+                    pose = runner.motion.pose().clone();
                 }
             }
-            self.text_at(&names, &pose)
+            let velocity = |freedom: DriverId| {
+                let [own, set] = [&self.model, &scenario.driven]
+                    .map(|model| model.drivers[freedom.index()].start_velocity());
+                (own != set).then_some(set)
+            };
+            self.text_at(&names, (&pose, velocity))
         })
     }
 
@@ -477,9 +512,15 @@ impl Mechanism {
         Scenario::new(&self.model, &self.home()?, times, drives)
     }
 
-    /// Returns all parameters in force for values of some.
-    fn in_force(&self, set: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
-        parameters(&self.model, set)
+    /// Returns the motions with the starts of freedoms among some values, and all parameters in force.
+    fn set(
+        &self,
+        motions: Motions,
+        mut set: Vec<(String, Value)>,
+    ) -> Result<(Scenario, Vec<f64>), Failure> {
+        let mut scenario = self.scenario(motions)?;
+        scenario.set_starts(&take_starts(&self.model, &mut set)?)?;
+        Ok((scenario, parameters(&self.model, set)?))
     }
 
     /// Returns the pose of the file's own values.
@@ -496,22 +537,30 @@ impl Mechanism {
     }
 
     /// Returns the text of the file with parameters, start values and estimates of a pose.
-    fn text_at(&self, parameters: &[String], pose: &Pose) -> Result<String, Failure> {
-        edit(
-            self.source.text(),
-            &self.model,
-            parameters,
-            (pose, |_| None),
-            Place::Whole,
-        )
-        .map_err(|error| Failure::File(error.to_string()))
+    fn text_at(
+        &self,
+        parameters: &[String],
+        start: (&Pose, impl Fn(DriverId) -> Option<f64>),
+    ) -> Result<String, Failure> {
+        let text = self.source.text();
+        edit(text, &self.model, parameters, start, Place::Whole)
+            .map_err(|error| Failure::File(error.to_string()))
+    }
+
+    /// Returns the parameter, or the start of a freedom, of a name.
+    fn quantity(&self, name: &str) -> Result<Quantity, Failure> {
+        let mut starts = self.model.starts_of_freedoms().into_iter();
+        match starts.find(|(start, ..)| start == name) {
+            Some((_, freedom, order)) => Ok(Quantity::Start(freedom, order)),
+            None => self.free(name).map(Quantity::Parameter),
+        }
     }
 
     /// Returns the direction in which a parameter grows, or the start of a freedom.
     fn direction(&self, name: &str) -> Result<Direction, Failure> {
-        let mut starts = self.model.starts_of_freedoms().into_iter();
-        let Some((_, freedom, order)) = starts.find(|(start, ..)| start == name) else {
-            return Ok(Direction::by_parameter(&self.model, self.free(name)?));
+        let (freedom, order) = match self.quantity(name)? {
+            Quantity::Parameter(id) => return Ok(Direction::by_parameter(&self.model, id)),
+            Quantity::Start(freedom, order) => (freedom, order),
         };
         let mut direction = Direction::zero(&self.model);
         let change = &mut direction.drivers[freedom.index()];

@@ -1,7 +1,10 @@
-//! Parameters, drivers, ranges and diagnostics as rows: tuples to which the package gives names.
+//! Named things, ranges, equilibria and diagnostics as rows: tuples to which the package gives names.
 
-use biela::kinematics::{End, Range};
-use biela::mechanism::{Diagnostic, Driver, DriverId, Mechanism, Parameter, Source, Unit};
+use biela::dynamics::{Equilibrium, Held, StateSpace};
+use biela::kinematics::{End, Pose, Range};
+use biela::mechanism::{
+    Diagnostic, Driver, DriverId, ForceComponent, Mechanism, Parameter, Source, Unit,
+};
 use biela_tools::cli;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -28,7 +31,8 @@ pub(crate) type ParameterRow = (
     bool,
 );
 
-/// A driver: name, description, unit, start value of an input, limits, whether it is wrapped.
+/// A driver or a freedom: name, description, unit, start value of an input or a freedom, limits, whether
+/// it is wrapped; start velocity of a freedom.
 pub(crate) type DriverRow = (
     String,
     String,
@@ -37,7 +41,28 @@ pub(crate) type DriverRow = (
     Option<f64>,
     Option<f64>,
     bool,
+    Option<f64>,
 );
+
+/// An input, a force or a measure: name, description, unit, and the variable that has its value.
+pub(crate) type NamedRow = (String, String, &'static str, String);
+
+/// Name, force and description of what holds a coordinate.
+type HeldRow = (String, f64, String);
+
+/// Linear equations: values of drivers, q, names of states and of inputs, A, B, C and D by rows, and what
+/// holds.
+pub(crate) type LinearRow = (
+    Vec<f64>,
+    Vec<f64>,
+    Vec<String>,
+    Vec<String>,
+    [Vec<f64>; 4],
+    Vec<HeldRow>,
+);
+
+/// An equilibrium: values of drivers, q, what holds, and the names of friction that is left out.
+pub(crate) type EquilibriumRow = (Vec<f64>, Vec<f64>, Vec<HeldRow>, Vec<String>);
 
 /// An end of a range: its kind, the driver's value, its text, the number of turns.
 type EndRow = (&'static str, Option<f64>, String, Option<u32>);
@@ -96,7 +121,82 @@ pub(crate) fn driver_row(d: &Driver) -> DriverRow {
         d.min,
         d.max,
         d.wrapped,
+        d.is_free().then(|| d.start_velocity()),
     )
+}
+
+/// Returns the inputs of forces as rows.
+pub(crate) fn inputs(mechanism: &Mechanism) -> Vec<NamedRow> {
+    let inputs = mechanism.force_inputs().into_iter();
+    inputs.map(force_row).collect()
+}
+
+/// Returns the forces that are no inputs as rows.
+pub(crate) fn forces(mechanism: &Mechanism) -> Vec<NamedRow> {
+    let forces = mechanism.given_forces().into_iter();
+    forces.map(force_row).collect()
+}
+
+fn force_row(force: ForceComponent) -> NamedRow {
+    let variable = force.name.clone();
+    (force.name, force.description, force.unit.name, variable)
+}
+
+/// Returns the measures as rows: those of coordinates, then those computed from others.
+pub(crate) fn measures(mechanism: &Mechanism) -> Vec<NamedRow> {
+    let of_coordinates = mechanism.measures.iter().map(|measure| {
+        let unit = measure.coordinate.kind.unit().name;
+        let variable = format!("{}.position", measure.name);
+        (
+            measure.name.clone(),
+            measure.description.clone(),
+            unit,
+            variable,
+        )
+    });
+    let derived = mechanism.derived.iter().map(|measure| {
+        let unit = measure.unit.unwrap_or(Unit::ONE).name;
+        (
+            measure.name.clone(),
+            measure.description.clone(),
+            unit,
+            measure.name.clone(),
+        )
+    });
+    of_coordinates.chain(derived).collect()
+}
+
+/// Returns linear equations at a pose as a row.
+pub(crate) fn linear_row(space: StateSpace, pose: &Pose, mechanism: &Mechanism) -> LinearRow {
+    let matrices = space.matrices().map(|rows| rows.concat());
+    (
+        pose.drivers.clone(),
+        pose.q[..3 * mechanism.bodies.len()].to_vec(),
+        space.states,
+        space.inputs,
+        matrices,
+        held_rows(&space.held, mechanism),
+    )
+}
+
+/// Returns an equilibrium as a row.
+pub(crate) fn equilibrium_row(found: Equilibrium, mechanism: &Mechanism) -> EquilibriumRow {
+    let left_out = found.left_out.iter();
+    let left_out = left_out.map(|force| mechanism.forces[*force].name.clone());
+    (
+        found.drivers,
+        found.q[..3 * mechanism.bodies.len()].to_vec(),
+        held_rows(&found.held, mechanism),
+        left_out.collect(),
+    )
+}
+
+fn held_rows(held: &[Held], mechanism: &Mechanism) -> Vec<HeldRow> {
+    let held = held.iter().map(|held| {
+        let name = held.name(mechanism).to_owned();
+        (name, held.size, held.describe(mechanism))
+    });
+    held.collect()
 }
 
 /// Returns the range of a driver as a row.

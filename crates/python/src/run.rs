@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use biela::dynamics::Event;
 use biela::kinematics::{Direction, Output};
 use biela::mechanism::Mechanism;
 use biela_tools::drawing::ForcePlace;
@@ -10,6 +11,7 @@ use pyo3::prelude::*;
 
 use crate::call::{Interrupt, apart};
 use crate::error::Failure;
+use crate::events::{EventColumns, event_columns};
 use crate::film::Film;
 use crate::runner::Runner;
 use crate::scenario::Scenario;
@@ -29,9 +31,11 @@ pub(crate) struct Run {
     /// Cause of a stop before the last row.
     #[pyo3(get)]
     stop: Option<String>,
-    /// Warnings about samples in whole angles, then the notices of the motion, as `biela run` tells them.
+    /// Warnings about samples in whole angles, then the notices of the motion but events, as `biela run`
+    /// tells them.
     #[pyo3(get)]
     notices: Vec<String>,
+    events: Vec<(usize, Event)>,
 }
 
 #[pymethods]
@@ -44,6 +48,11 @@ impl Run {
     /// Returns the derivatives, by row, then by direction, then by column, and keeps none of them.
     fn take_gradient<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         std::mem::take(&mut self.gradient).into_pyarray(py)
+    }
+
+    /// Returns the events of free motion as columns.
+    fn events<'py>(&self, py: Python<'py>) -> EventColumns<'py> {
+        event_columns(py, &self.events)
     }
 
     /// Returns whether the run has forces that arrows can show.
@@ -84,18 +93,21 @@ pub(crate) fn run(
         rows: 0,
         stop: None,
         notices: scenario.whole_angles(),
+        events: Vec::new(),
     };
-    result.notices.extend(runner.notices());
+    let mut events = Vec::new();
+    runner.tell(&mut result.notices, &mut events);
     let mut interrupt = Interrupt::of_call();
     for row in 0..rows {
         interrupt.check()?;
-        if row > 0 {
-            let advanced = runner.advance(row);
-            result.notices.extend(runner.notices());
-            if let Err(stop) = advanced {
-                result.stop = Some(stop);
-                break;
-            }
+        let advanced = match row {
+            0 => runner.lead(&mut interrupt),
+            _ => runner.advance(row).map_err(Failure::Assembly),
+        };
+        runner.tell(&mut result.notices, &mut events);
+        if let Err(stop) = advanced {
+            result.stop = Some(stop.reason()?);
+            break;
         }
         let values = columns.iter().map(|column| runner.value(column));
         result.values.extend(values);
@@ -106,5 +118,6 @@ pub(crate) fn run(
         result.film.add(row, &runner.motion);
         result.rows += 1;
     }
+    result.events = events.into_iter().map(|event| (0, event)).collect();
     Ok(result)
 }

@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-use biela::dynamics::{self, Given, Motion, StateSpace, on_cubic};
+use biela::dynamics::{self, Equilibrium, Event, Given, Motion, Notice, StateSpace, on_cubic};
 use biela::kinematics::{
     Blocked, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solver, SolverChoices,
 };
 use biela::mechanism::{DriverId, Jet, Order, show_time};
 
+use crate::call::Interrupt;
 use crate::error::Failure;
 use crate::scenario::Scenario;
 
@@ -56,17 +57,34 @@ impl Runner {
         })
     }
 
-    /// Moves from the file's own pose to the first time, with these parameters. The result depends
+    /// Moves from the file's own pose to the start, with these parameters. The result depends
     /// on them alone, not on motions before.
     ///
     /// # Errors
     ///
     /// No continuous motion leads there, or the mechanism does not close there.
     pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<(), Failure> {
-        let time = self.scenario.times[0];
+        let time = self.scenario.start;
         self.begin(parameters)
             .map_err(|error| Failure::Assembly(error.at_start(time)))?;
         self.release()
+    }
+
+    /// Moves freely from the start to the first row, in steps of the file.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`advance`](Self::advance), as reasons of variants; [`Failure::Raised`] after Ctrl-C.
+    pub(crate) fn lead(&mut self, interrupt: &mut Interrupt) -> Result<(), Failure> {
+        let (end, step) = (self.scenario.times[0], self.scenario.own.simulation.step);
+        while self.motion.pose().time < end {
+            interrupt.check()?;
+            let now = self.motion.pose().time;
+            let next = (now + step).min(end);
+            let until = if next > now { next } else { end };
+            self.go(0, until).map_err(Failure::Assembly)?;
+        }
+        Ok(())
     }
 
     /// Lets freedoms move by the forces from the present pose on, with the velocities of the file.
@@ -88,7 +106,7 @@ impl Runner {
         self.home.resume(&home.0, &home.1);
         let home = &home.0;
         let value = |driver| Some(self.sample(driver, 0)?.value);
-        let path = (self.home).path_to_start(driven, parameters, self.scenario.times[0], value);
+        let path = (self.home).path_to_start(driven, parameters, self.scenario.start, value);
         self.home.start(home, &path)?;
         self.home.copy_choices(&mut self.choices);
         self.motion.begin(self.home.pose(), &self.choices);
@@ -104,6 +122,11 @@ impl Runner {
     ///
     /// Cause of the mechanism's stop, and its place.
     pub(crate) fn advance(&mut self, row: usize) -> Result<(), String> {
+        self.go(row, self.scenario.times[row])
+    }
+
+    /// Moves on to a time on the way to a row.
+    fn go(&mut self, row: usize, time: f64) -> Result<(), String> {
         self.motion.renew_budget();
         self.head_for(row);
         let part = Part {
@@ -111,7 +134,6 @@ impl Runner {
             held: &self.held,
             row,
         };
-        let time = self.scenario.times[row];
         let advanced = self.motion.advance(&self.path, &part, time);
         advanced.map_err(|stop| {
             stop.describe(&self.motion, |driver| self.sample(driver, row).is_some())
@@ -228,9 +250,51 @@ impl Runner {
         motion.linearize(outputs).map_err(stopped)
     }
 
-    /// Returns what is worth knowing and was not told yet.
-    pub(crate) fn notices(&mut self) -> impl Iterator<Item = String> {
-        self.motion.notices().map(|notice| notice.to_string())
+    /// Adds what is worth knowing and was not told yet, with the events of free motion apart.
+    pub(crate) fn tell(&mut self, notices: &mut Vec<String>, events: &mut Vec<Event>) {
+        for notice in self.motion.notices() {
+            match notice {
+                Notice::Event(event, _) => events.push(event),
+                other => notices.push(other.to_string()),
+            }
+        }
+    }
+
+    /// Adds the events of free motion that were not told yet.
+    pub(crate) fn tell_events(&mut self, events: &mut Vec<Event>) {
+        for notice in self.motion.happenings() {
+            if let Notice::Event(event, _) = notice {
+                events.push(event);
+            }
+        }
+    }
+
+    /// Moves to the stable equilibrium downhill from the start, or with `all` finds those downhill from
+    /// places all over the range of the freedoms.
+    ///
+    /// # Errors
+    ///
+    /// There is no freedom, or no equilibrium is found.
+    pub(crate) fn balance(&mut self, all: bool) -> Result<Vec<Equilibrium>, Failure> {
+        let Self {
+            motion,
+            scenario,
+            held,
+            ..
+        } = self;
+        if motion.solution.forces().is_none() {
+            motion.seek_forces();
+        }
+        let part = Part {
+            scenario,
+            held,
+            row: 0,
+        };
+        let found = match all {
+            true => motion.balances(&part),
+            false => motion.balance(&part).map(|equilibrium| vec![equilibrium]),
+        };
+        found.map_err(stopped)
     }
 
     /// Watches contacts, which tell where they pull though nobody asks for forces.

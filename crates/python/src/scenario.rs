@@ -57,6 +57,8 @@ pub(crate) struct Scenario {
     /// The mechanism with the motions of the call; drivers that follow samples are inputs.
     pub(crate) driven: Arc<Mechanism>,
     pub(crate) home: Arc<Home>,
+    /// Time at which the motion begins \[s\]: that of the first row, or of the file where freedoms move.
+    pub(crate) start: f64,
     /// Times of the rows \[s\], ascending; at least one.
     pub(crate) times: Vec<f64>,
     pub(crate) samples: Vec<Samples>,
@@ -83,9 +85,60 @@ impl Scenario {
     }
 
     /// Lets freedoms begin elsewhere, or with other velocities, than the file says.
-    pub(crate) fn set_starts(&mut self, starts: &[Start]) {
+    ///
+    /// # Errors
+    ///
+    /// The motions of the call drive one of them.
+    pub(crate) fn set_starts(&mut self, starts: &[Start]) -> Result<(), Failure> {
         for &(freedom, order, value) in starts {
+            let driver = &self.driven.drivers[freedom.index()];
+            if !driver.is_free() {
+                return Err(Failure::Usage(format!(
+                    "parameters: the start of `{0}` has no effect: `drive` has an entry for `{0}`",
+                    driver.name
+                )));
+            }
             Arc::make_mut(&mut self.driven).set_start(freedom, order, value);
+        }
+        Ok(())
+    }
+
+    /// Checks that the times are those of a free motion, which begins at the start of the file: without
+    /// arrays that begin later, or that have no times.
+    fn check_free(&self) -> Result<(), Failure> {
+        let refuse = |message: String| Err(Failure::Usage(message));
+        let Some(freedom) = self.driven.drivers.iter().find(|driver| driver.is_free()) else {
+            return Ok(());
+        };
+        let (name, start, [first, .., last] | [first @ last]) =
+            (&freedom.name, self.start, &*self.times)
+        else {
+            return Ok(());
+        };
+        let samples = self.samples.iter().map(|samples| {
+            let driver = &self.driven.drivers[samples.driver.index()];
+            driver.name.clone()
+        });
+        let inputs = self.driven.force_inputs();
+        let loads = self
+            .loads
+            .iter()
+            .map(|(place, _)| inputs[*place].name.clone());
+        let sampled = samples.chain(loads).next();
+        if *first < start {
+            return refuse(format!(
+                "t[0] = {first} is before {start}, the `start` of the file, from which `{name}` moves"
+            ));
+        }
+        match sampled {
+            Some(sampled) if *first > start => refuse(format!(
+                "t[0] = {first}: `{name}` moves from {start} on, the `start` of the file; give the \
+                 values of `{sampled}` from there on"
+            )),
+            Some(sampled) if self.times.len() > 1 && first == last => refuse(format!(
+                "`{sampled}` has values without times, and `{name}` takes time to move; give `t`"
+            )),
+            _ => Ok(()),
         }
     }
 
@@ -152,14 +205,21 @@ impl Scenario {
                 }
             };
         }
-        Ok(Self {
+        let start = match driven.has_freedoms() {
+            true => own.simulation.start,
+            false => times[0],
+        };
+        let scenario = Self {
             own: Arc::clone(own),
             home: Arc::clone(home),
+            start,
             times,
             samples,
             loads: places(&driven, loads),
             driven: Arc::new(driven),
-        })
+        };
+        scenario.check_free()?;
+        Ok(scenario)
     }
 }
 

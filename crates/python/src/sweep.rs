@@ -2,8 +2,9 @@
 
 use std::sync::atomic::AtomicBool;
 
+use biela::dynamics::Event;
 use biela::kinematics::Output;
-use biela::mechanism::ParameterId;
+use biela::mechanism::{DriverId, Order, ParameterId};
 use biela_tools::cli::check_parameter;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::call::Interrupt;
 use crate::error::Failure;
+use crate::events::{EventColumns, event_columns};
 use crate::runner::{BATCH, Runner};
 use crate::scenario::Scenario;
 
@@ -25,6 +27,8 @@ pub(crate) struct Sweep {
     /// Reasons of the variants that stopped, by their index.
     #[pyo3(get)]
     reasons: Vec<(usize, String)>,
+    /// Events of free motions, by the index of the variant.
+    events: Vec<(usize, Event)>,
 }
 
 #[pymethods]
@@ -33,89 +37,155 @@ impl Sweep {
     fn take_values<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         std::mem::take(&mut self.values).into_pyarray(py)
     }
+
+    /// Returns the events of free motions as columns.
+    fn events<'py>(&self, py: Python<'py>) -> EventColumns<'py> {
+        event_columns(py, &self.events)
+    }
+}
+
+/// A quantity that differs between variants.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Quantity {
+    Parameter(ParameterId),
+    /// Value or velocity of a freedom at the start.
+    Start(DriverId, Order),
+}
+
+/// Variants of a mechanism.
+pub(crate) struct Variants<'a> {
+    pub(crate) scenario: &'a Scenario,
+    /// Parameters in force but for those that are swept \[SI\].
+    pub(crate) parameters: &'a [f64],
+    /// The quantities that are swept, with a value per variant \[SI\].
+    pub(crate) swept: &'a [(Quantity, Vec<f64>)],
+    pub(crate) count: usize,
+    pub(crate) columns: &'a [Output],
 }
 
 /// The outcome of one variant.
+#[derive(Default)]
 struct Outcome {
     rows: usize,
     reason: Option<String>,
+    events: Vec<Event>,
 }
 
-/// Runs the variants, whose parameters \[SI\] are by parameter, then by variant. A variant that
-/// does not reach its start or stops has a reason and no values from there on.
-///
-/// # Errors
-///
-/// The equations of the mechanism do not fit; [`Failure::Ended`] after `stop`.
-pub(crate) fn sweep(
-    scenario: &Scenario,
-    parameters: &[f64],
-    swept: &[(ParameterId, Vec<f64>)],
-    variants: usize,
-    columns: &[Output],
-    stop: &AtomicBool,
-) -> Result<Sweep, Failure> {
-    // An error of the equations is the same for all variants.
-    Runner::new(scenario, columns)?;
-    let rows = scenario.times.len();
-    let size = rows * columns.len();
-    let mut values = vec![f64::NAN; variants * size];
-    let run = |runner: &mut Runner, variant: usize, values: &mut [f64]| {
-        let mut outcome = Outcome {
-            rows: 0,
-            reason: None,
+impl Variants<'_> {
+    /// Runs the variants. One that does not reach its start or stops has a reason and no values from
+    /// there on.
+    ///
+    /// # Errors
+    ///
+    /// The equations of the mechanism do not fit; [`Failure::Ended`] after `stop`.
+    pub(crate) fn run(&self, stop: &AtomicBool) -> Result<Sweep, Failure> {
+        let Self {
+            scenario, columns, ..
+        } = *self;
+        // An error of the equations is the same for all variants.
+        Runner::new(scenario, columns)?;
+        let size = scenario.times.len() * columns.len();
+        let mut values = vec![f64::NAN; self.count * size];
+        let batches = values.par_chunks_mut((BATCH * size).max(1)).enumerate();
+        let outcomes: Vec<Vec<Outcome>> = batches
+            .map(|(batch, values)| {
+                Interrupt::Told(stop).check()?;
+                let mut runner = Runner::new(scenario, columns)?;
+                let variants = values.chunks_exact_mut(size).enumerate();
+                variants
+                    .map(|(index, values)| {
+                        let mut outcome = Outcome::default();
+                        let variant = BATCH * batch + index;
+                        let run = self.run_one(&mut runner, variant, values, &mut outcome, stop);
+                        if let Err(failure) = run {
+                            outcome.reason = Some(failure.reason()?);
+                        }
+                        Ok(outcome)
+                    })
+                    .collect()
+            })
+            .collect::<Result<_, Failure>>()?;
+        let mut result = Sweep {
+            values,
+            rows: Vec::with_capacity(self.count),
+            reasons: Vec::new(),
+            events: Vec::new(),
         };
+        for (variant, outcome) in outcomes.into_iter().flatten().enumerate() {
+            result.rows.push(outcome.rows);
+            let reason = outcome.reason.map(|reason| (variant, reason));
+            result.reasons.extend(reason);
+            let events = outcome.events.into_iter();
+            result.events.extend(events.map(|event| (variant, event)));
+        }
+        Ok(result)
+    }
+
+    /// Runs a variant; its values are by column, then by row.
+    ///
+    /// # Errors
+    ///
+    /// The reason for which it stops, or the cause that ends the call.
+    fn run_one(
+        &self,
+        runner: &mut Runner,
+        variant: usize,
+        values: &mut [f64],
+        outcome: &mut Outcome,
+        stop: &AtomicBool,
+    ) -> Result<(), Failure> {
+        let Self {
+            scenario, columns, ..
+        } = *self;
         let mut interrupt = Interrupt::Told(stop);
-        let mut own = parameters.to_vec();
-        for (parameter, series) in swept {
-            let value = series[variant];
-            if let Err(reason) = check_parameter(&scenario.own, *parameter, value) {
-                outcome.reason = Some(reason);
-                return Ok(outcome);
-            }
-            own[parameter.index()] = value;
+        let (parameters, starts) = self.values(variant)?;
+        if !starts.is_empty() {
+            let mut own = scenario.clone();
+            own.set_starts(&starts)?;
+            *runner = Runner::new(&own, columns)?;
         }
-        scenario.own.derive_parameters(&mut own);
-        if let Err(failure) = runner.start(&own) {
-            outcome.reason = Some(failure.reason()?);
-            return Ok(outcome);
-        }
+        runner.start(&parameters)?;
+        let rows = scenario.times.len();
         for row in 0..rows {
             interrupt.check()?;
-            if row > 0
-                && let Err(reason) = runner.advance(row)
-            {
-                outcome.reason = Some(reason);
-                return Ok(outcome);
-            }
+            let advanced = match row {
+                0 => runner.lead(&mut interrupt),
+                _ => runner.advance(row).map_err(Failure::Assembly),
+            };
+            runner.tell_events(&mut outcome.events);
+            advanced?;
             for (column, values) in columns.iter().zip(values.chunks_exact_mut(rows)) {
                 values[row] = runner.value(column);
             }
             outcome.rows += 1;
         }
-        Ok(outcome)
-    };
-    let batches = values.par_chunks_mut((BATCH * size).max(1)).enumerate();
-    let outcomes: Vec<Vec<Outcome>> = batches
-        .map(|(batch, values)| {
-            Interrupt::Told(stop).check()?;
-            let mut runner = Runner::new(scenario, columns)?;
-            let variants = values.chunks_exact_mut(size).enumerate();
-            variants
-                .map(|(index, values)| run(&mut runner, BATCH * batch + index, values))
-                .collect()
-        })
-        .collect::<Result<_, Failure>>()?;
-    let mut result = Sweep {
-        values,
-        rows: Vec::with_capacity(variants),
-        reasons: Vec::new(),
-    };
-    for (variant, outcome) in outcomes.into_iter().flatten().enumerate() {
-        result.rows.push(outcome.rows);
-        result
-            .reasons
-            .extend(outcome.reason.map(|reason| (variant, reason)));
+        Ok(())
     }
-    Ok(result)
+
+    /// Returns the parameters of a variant, and the starts of freedoms that are swept.
+    ///
+    /// # Errors
+    ///
+    /// A value is beyond its limits.
+    fn values(&self, variant: usize) -> Result<(Vec<f64>, Vec<(DriverId, Order, f64)>), Failure> {
+        let own = &self.scenario.own;
+        let mut parameters = self.parameters.to_vec();
+        let mut starts = Vec::new();
+        for (quantity, series) in self.swept {
+            let value = series[variant];
+            match *quantity {
+                Quantity::Parameter(id) => {
+                    check_parameter(own, id, value).map_err(Failure::Usage)?;
+                    parameters[id.index()] = value;
+                }
+                Quantity::Start(..) if !value.is_finite() => {
+                    let message = format!("{value} is no start of a freedom");
+                    return Err(Failure::Usage(message));
+                }
+                Quantity::Start(freedom, order) => starts.push((freedom, order, value)),
+            }
+        }
+        own.derive_parameters(&mut parameters);
+        Ok((parameters, starts))
+    }
 }
