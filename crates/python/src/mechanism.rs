@@ -475,7 +475,7 @@ impl Mechanism {
             let velocity = |freedom: DriverId| {
                 let [own, set] = [&self.model, &scenario.driven]
                     .map(|model| model.drivers[freedom.index()].start_velocity());
-                (own != set).then_some(set)
+                (own.to_bits() != set.to_bits()).then_some(set)
             };
             self.text_at(&names, (&pose, velocity))
         })

@@ -135,7 +135,7 @@ impl Scenario {
                 "t[0] = {first}: `{name}` moves from {start} on, the `start` of the file; give the \
                  values of `{sampled}` from there on"
             )),
-            Some(sampled) if self.times.len() > 1 && first == last => refuse(format!(
+            Some(sampled) if self.times.len() > 1 && first >= last => refuse(format!(
                 "`{sampled}` has values without times, and `{name}` takes time to move; give `t`"
             )),
             _ => Ok(()),

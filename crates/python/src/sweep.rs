@@ -16,6 +16,9 @@ use crate::events::{EventColumns, event_columns};
 use crate::runner::{BATCH, Runner};
 use crate::scenario::Scenario;
 
+/// Starts of freedoms: of their values or their velocities.
+type Starts = Vec<(DriverId, Order, f64)>;
+
 /// The rows of many variants.
 #[pyclass]
 pub(crate) struct Sweep {
@@ -167,7 +170,7 @@ impl Variants<'_> {
     /// # Errors
     ///
     /// A value is beyond its limits.
-    fn values(&self, variant: usize) -> Result<(Vec<f64>, Vec<(DriverId, Order, f64)>), Failure> {
+    fn values(&self, variant: usize) -> Result<(Vec<f64>, Starts), Failure> {
         let own = &self.scenario.own;
         let mut parameters = self.parameters.to_vec();
         let mut starts = Vec::new();
