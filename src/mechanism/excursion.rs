@@ -12,7 +12,7 @@ pub struct Excursion<'a> {
     pub time: f64,
     /// Name of the driver or input.
     pub name: &'a str,
-    /// What it is.
+    /// The thing itself.
     pub of: Excursive,
     /// Its value \[SI\].
     pub value: f64,
@@ -20,7 +20,7 @@ pub struct Excursion<'a> {
     pub limit: (&'static str, f64),
 }
 
-/// What has limits that it may leave.
+/// A thing with limits that it may leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Excursive {
     /// A driver, by the kind of its coordinate.

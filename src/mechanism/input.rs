@@ -17,7 +17,7 @@ pub struct Input {
     pub min: Option<f64>,
     /// Upper limit, likewise.
     pub max: Option<f64>,
-    /// What a run gives it, an expression in t and the parameters: it is no input any more then.
+    /// Motion that a run gives it, an expression in t and the parameters: it is no input any more then.
     pub given: Option<Expression>,
 }
 
@@ -35,11 +35,11 @@ pub struct LoadInput {
     pub start: f64,
     /// Lower and upper limit.
     pub limits: [Option<f64>; 2],
-    /// What it is.
+    /// The thing itself.
     pub target: LoadTarget,
 }
 
-/// What a load is.
+/// The kind of a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoadTarget {
     /// An input, by its index.

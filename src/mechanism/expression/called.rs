@@ -22,7 +22,7 @@ pub struct Function {
     pub description: String,
     /// Number of arguments.
     pub arguments: usize,
-    /// What it computes.
+    /// Its law.
     pub body: FunctionBody,
     /// Parameters that it uses, also through others that it calls; ascending, each once.
     pub parameters: Box<[ParameterId]>,
@@ -44,7 +44,7 @@ pub struct Corner {
     pub jumps: bool,
 }
 
-/// What a function computes.
+/// The law of a function.
 #[derive(Clone, Debug)]
 pub enum FunctionBody {
     /// An expression in its arguments.

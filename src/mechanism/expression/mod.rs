@@ -370,7 +370,7 @@ impl Expression {
             One(Unary::Abs | Unary::Sign | Unary::Floor | Unary::Ceil)
             | Two(Binary::Mod | Binary::Min | Binary::Max) => true,
             Operation::Call(place, _) => {
-                // Of functions that are being read the reader adds what they call.
+                // The reader adds what functions call that are being read.
                 let called = functions.get(*place as usize);
                 called.is_some_and(|function| function.has_pieces)
             }

@@ -63,7 +63,7 @@ pub(in crate::mechanism) struct FunctionNames<'a> {
     pub(in crate::mechanism) are_callable: bool,
 }
 
-/// What a call of a function needs.
+/// The shape of a call of a function.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::mechanism) struct Signature {
     /// Place of the function among all.

@@ -41,7 +41,7 @@ pub(super) fn compose_at(
     let Simulation { start, stop, .. } = composer.mechanism.simulation;
     // One that rises from zero has its direction later.
     let sizes = [start, 0.5 * (start + stop), stop].map(|time| {
-        // What moves has grown.
+        // Coordinates and their rates are one: what grows has its direction.
         let variable = |which| if which == Variable::Time { time } else { 1.0 };
         let value =
             |size: &Expression| size.evaluate_at(&|p| composer.parameter(p), &variable);
@@ -79,7 +79,7 @@ pub(super) fn compose_along(
     let start = composer.mechanism.simulation.start;
     let sign = law.map_or(1.0, |law| {
         let size = |[position, velocity]: [f64; 2]| {
-            // What moves elsewhere rests at zero like the coordinate, or grows like it.
+            // Coordinates elsewhere rest at zero like the coordinate, or grow like it.
             let other = |which| if which == Variable::Time { start } else { velocity };
             law.evaluate(&|p| composer.parameter(p), &other, [position, velocity])
         };
