@@ -168,7 +168,9 @@ fn the_archive_does_not_name_its_system() {
     // The directory's place stands six bytes before the end; compressed bytes before it may be anything.
     let place = bytes[bytes.len() - 6..bytes.len() - 2].try_into().unwrap();
     let directory = &bytes[u32::from_le_bytes(place) as usize..];
-    let entries = directory.windows(6).filter(|window| window.starts_with(ENTRY));
+    let entries = directory
+        .windows(6)
+        .filter(|window| window.starts_with(ENTRY));
     let systems: Vec<u8> = entries.map(|window| window[5]).collect();
     assert!(
         systems.len() > 3 && systems.iter().all(|system| *system == UNIX),
