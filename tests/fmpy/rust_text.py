@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from harness import ROOT
 
@@ -35,9 +36,9 @@ class Literal:
         return f"{self.file}:{self.line}: {self.text}"
 
 
-def sources() -> Iterator[tuple[str, str]]:
-    """The files of both libraries with their text, tests left out."""
-    for folder in SOURCES:
+def sources(folders: Iterable[Path] = SOURCES) -> Iterator[tuple[str, str]]:
+    """The files of folders, those of both libraries, with their text, tests left out."""
+    for folder in folders:
         for path in sorted(folder.rglob("*.rs")):
             name = path.relative_to(folder).as_posix()
             if "/tests" not in name:

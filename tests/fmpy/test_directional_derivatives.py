@@ -55,10 +55,10 @@ def moving_inputs(slave: Slave) -> dict[str, float]:
     values = {}
     for name in inputs(slave):
         start = float(slave.variables[name].start)
-        _, order = name.split(".")
+        thing, _, order = name.rpartition(".")
         moving = {"position": start + 0.003, "velocity": 0.7, "acceleration": -0.4}
-        # Others are forces.
-        values[name] = moving.get(order, 2.0)
+        # Others are forces, or inputs of the file.
+        values[name] = moving.get(order, 2.0 if thing else start + 0.003)
     return values | ({"rates": 2} if "rates" in slave.variables else {})
 
 

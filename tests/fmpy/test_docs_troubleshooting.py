@@ -277,7 +277,7 @@ ANSWER = re.compile(r"^(?:error|warning)\[([a-z0-9-]+)\]: (.*)$", re.MULTILINE)
 SNAPSHOTS = sorted(
     {
         found
-        for path in (ROOT / "tests" / "file" / "snapshots").glob("file__diagnostics__*.snap")
+        for path in (ROOT / "crates/tools/tests/file/snapshots").glob("file__diagnostics__*.snap")
         for found in ANSWER.findall(path.read_text(encoding="utf-8"))
     }
 )
@@ -318,7 +318,8 @@ def test_every_code_is_there():
 
 
 def test_nothing_else_is_explained():
-    every = [plain(literal.text) for name, text in SOURCES for literal in literals(name, text)]
+    files = [*SOURCES, *sources([ROOT / "crates/python/src"])]
+    every = [plain(literal.text) for name, text in files for literal in literals(name, text)]
     texts = {text for text in every if words_in(text) >= 1 and " " in text}
     patterns = [pattern(text) for text in texts if words_in(text) >= 2]
 

@@ -38,7 +38,7 @@ def inputs(fmu: Fmu, start: float, interval: float) -> np.ndarray:
     time = start + interval * np.arange(STEPS + 1)
     columns = {"time": time}
     for name in fmu.names("input"):
-        driver, order = name.rsplit(".", 1)
+        driver, _, order = name.rpartition(".")
         if order != "position":
             continue
         value = float(fmu.variables[name].start)

@@ -89,11 +89,26 @@ def expected_variables(file):
     yield "solver.substeps", "Integer", "local", "discrete", None
     yield "solver.proved", "Integer", "local", "discrete", None
     yield "time", "Real", "independent", "continuous", "s"
+    for place in range(1, expected_indicators(file) + 1):
+        yield f"event_indicator[{place}]", "Real", "local", "continuous", None
     if file["name"] in EXCHANGED:
         for place in range(1, 2 * len(file["freedoms"]), 2):
             for name in (f"state[{place}]", f"state[{place + 1}]", f"der(state[{place + 1}])"):
                 yield name, "Real", "local", "continuous", None
     yield "solver.budget", "Real", "parameter", "tunable", None
+    for name, table in file.get("inputs", {}).items():
+        yield name, "Real", "input", "continuous", table.get("unit")
+
+
+def expected_indicators(file):
+    """The number of events that a host looks for: limits of freedoms, and two for each argument of a
+    function with corners."""
+    stops = file.get("stops", {}).values() if file.get("freedoms") else []
+    limits = sum(side in stop for stop in stops for side in ("min", "max"))
+    functions = file.get("functions", {})
+    bent = [name for name, table in functions.items() if "table" in table and table.get("law") == "linear"]
+    sizes = [str(table.get("value")) for table in file.get("forces", {}).values()]
+    return limits + 2 * sum(size.count(f"{name}(") for size in sizes for name in bent)
 
 
 def expected_forces(file):
@@ -126,6 +141,9 @@ def expected_forces(file):
         if force_has_size(table):
             for suffix, unit in force_units(table).items():
                 yield f"{name}.{suffix}", unit
+    for name, table in file.get("stops", {}).items() if file.get("freedoms") else ():
+        (effort,) = force_units(table).values()
+        yield f"{name}.effort", effort
     for name, table in file.get("friction", {}).items():
         # Friction in a pin is a torque.
         of_pin = "joint" in table and file["joints"][table["joint"]]["type"] == "revolute"
@@ -455,7 +473,7 @@ def test_capabilities(fmu, mechanism_data, name):
     root = etree.parse(fmu(name).folder / "modelDescription.xml").getroot()
     assert root.get("fmiVersion") == "2.0"
     assert root.get("variableNamingConvention") == "structured"
-    assert root.get("numberOfEventIndicators") in (None, "0")
+    assert int(root.get("numberOfEventIndicators", 0)) == expected_indicators(mechanism_data(name))
 
     served = dict(root.find("ModelExchange").attrib)
     assert served.pop("modelIdentifier") == root.get("modelName") == name

@@ -101,7 +101,12 @@ def test_every_shipped_mechanism_runs_as_either(fmu, name):
     both = [
         simulate(fmu(name), fmi_type=kind, **options) for kind in ("ModelExchange", "CoSimulation")
     ]
-    assert len(both[0]) == len(both[1]) == 11
+    # A host that integrates adds a row on either side of an event.
+    grid = both[1]["time"]
+    last = np.searchsorted(both[0]["time"], grid * (1 + 1e-12), side="right") - 1
+    both[0] = both[0][last]
+    assert len(grid) == 11
+    np.testing.assert_allclose(both[0]["time"], grid, rtol=1e-12)
     # Of free motion the host integrates one, as exactly as its solver can from step to step.
     is_free = bool(state_names(fmu(name).description))
     tolerance = 1e-6 if is_free else 1e-9

@@ -203,7 +203,7 @@ def test_a_watched_file_is_seen_anew(tmp_path):
             frame,
             """
             const inner = (selector) => find("iframe").contentDocument.querySelector(selector);
-            const titled = (name) => until(() => inner("h1")?.textContent === name);
+            const titled = (name) => until(() => inner("h1")?.textContent === name && inner(".stage"));
             const poses = () => [...inner(".stage").querySelectorAll("[data-attachment]")]
               .map((part) => part.getAttribute("transform")).join();
             const moves = async () => {

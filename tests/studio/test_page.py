@@ -131,7 +131,7 @@ def test_what_nothing_drives_is_moved_by_hand(sheet):
 
 
 def test_a_file_of_another_program_is_dropped_in(sheet):
-    samples = sorted((ROOT / "tests" / "exchange" / "samples").rglob("*.linkage2"))
+    samples = sorted((ROOT / "crates/tools/tests/exchange/samples").rglob("*.linkage2"))
     sheet.page.locator(".opened").set_input_files(samples[0])
     sheet.page.wait_for_function("() => document.querySelector('.studio').studio.view.sketch.bodies.length > 0")
     assert sheet.text.startswith("# From ")

@@ -4,7 +4,7 @@
 //!
 //! | number | derivatives | use |
 //! |---|---|---|
-//! | [`Dual`], [`Jet`] | along a straight line in the space of q | gradients and quadratic terms |
+//! | [`Dual`], [`Jet`](crate::mechanism::Jet) | along a straight line in the space of q | gradients and quadratic terms |
 //! | [`Varied`] | in time, each with its change along a direction in the space of drivers and parameters | [`Sensitivity`](crate::kinematics::Sensitivity) |
 //! | [`Enclosed`] | along a sub-step, each enclosed over all of it | the certificate while parameters move |
 

@@ -103,9 +103,10 @@ def record(case: Case, fmu: Fmu) -> dict[str, np.ndarray]:
     inputs = fmu.names("input")
     time = np.linspace(0, case.duration, case.steps + 1)
     drivers = case.drivers(Taylor.time(time))
-    # Other inputs, such as a set point, stay at their start.
-    given = [column for driver in drivers for column in outputs_of(driver)]
-    signals = np.zeros(len(time), dtype=[(column, float) for column in ("time", *given)])
+    signals = np.zeros(len(time), dtype=[(column, float) for column in ("time", *inputs)])
+    # Those that no driver has, such as a set point, stay at their start.
+    for column in inputs:
+        signals[column] = float(fmu.variables[column].start)
     signals["time"] = time
     for driver, u in drivers.items():
         values = (u.value, u.first, u.second)
@@ -113,7 +114,7 @@ def record(case: Case, fmu: Fmu) -> dict[str, np.ndarray]:
             signals[column] = value
     result = simulate(
         fmu,
-        input=signals if given else None,
+        input=signals if inputs else None,
         start_time=0.0,
         stop_time=case.duration,
         output_interval=case.duration / case.steps,
