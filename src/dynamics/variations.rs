@@ -10,7 +10,9 @@ use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
 use super::triangular::{ascend, descend};
-use crate::kinematics::{Direction, ForceQuantity, ForceSensitivity, KnownMotion, Rates, Solver};
+use crate::kinematics::{
+    Direction, ForceQuantity, ForceSensitivity, KnownMotion, Rates, Sensitivity, Solver,
+};
 use crate::mechanism::Jet;
 
 impl Equations {
@@ -41,7 +43,6 @@ impl Equations {
     ) -> Result<Vec<Direction>, Error> {
         let count = self.freedoms.len();
         solver.solve_rates(|driver| self.point.drivers[driver.index()], rates)?;
-        let mut still = vec![0.0; self.point.loads.len()];
         let mut varied = self.directions.clone();
         let changes = x[2 * count + 1..].chunks_exact(2 * count);
         for (direction, changes) in varied.iter_mut().zip(changes) {
@@ -49,9 +50,75 @@ impl Equations {
                 let change = Jet::new(changes[k], [changes[count + k], 0.0]);
                 direction.drivers[freedom.index()] = change;
             }
+        }
+        if self.complete_all(solver, rates, &mut varied)? {
+            return Ok(varied);
+        }
+        let mut still = vec![0.0; self.point.loads.len()];
+        for direction in &mut varied {
             self.complete(solver, rates, direction, &mut still)?;
         }
         Ok(varied)
+    }
+
+    /// Completes directions along which the inputs of forces stay, as [`complete`](Self::complete) does,
+    /// with one factorisation for all. Returns whether it has done so: not next to a change point, and
+    /// not for friction in joints, which depends on the changes of reactions.
+    fn complete_all(
+        &mut self,
+        solver: &mut Solver,
+        rates: &Rates,
+        directions: &mut [Direction],
+    ) -> Result<bool, Error> {
+        let Self {
+            passive,
+            point,
+            forces,
+            factor,
+            accelerations,
+            freedoms,
+            ..
+        } = self;
+        if passive.friction.slides_in_joints() {
+            return Ok(false);
+        }
+        let motion = KnownMotion {
+            rates,
+            driver_rates: &point.drivers,
+            inputs: &point.loads,
+        };
+        let (loads, of_passive) = (point.loads.len(), point.loads.len() - passive.loads());
+        let mut coordinates = Vec::with_capacity(directions.len());
+        let mut efforts = Vec::with_capacity(directions.len() * freedoms.len());
+        let inputs = |_: usize, sensitivity: &Sensitivity<'_>| {
+            let mut changes = vec![0.0; loads];
+            coordinates.push(match passive.is_empty() {
+                true => Vec::new(),
+                false => passive.changes(sensitivity, None, &mut changes[of_passive..]),
+            });
+            changes
+        };
+        let sought = (&**freedoms, &*directions);
+        let done = solver.effort_changes(motion, sought, forces, inputs, |_, changes| {
+            efforts.extend_from_slice(changes);
+        })?;
+        if !done {
+            return Ok(false);
+        }
+        let mut holding = vec![0.0; loads - of_passive];
+        let efforts = efforts.chunks_exact(freedoms.len()).zip(&coordinates);
+        for (direction, (efforts, coordinates)) in directions.iter_mut().zip(efforts) {
+            for (change, effort) in accelerations.iter_mut().zip(efforts) {
+                *change = -effort;
+            }
+            descend(factor, accelerations);
+            passive.hold_changes(coordinates, accelerations, &mut holding);
+            ascend(factor, accelerations);
+            for (change, freedom) in accelerations.iter().zip(&*freedoms) {
+                direction.drivers[freedom.index()].derivatives[1] = *change;
+            }
+        }
+        Ok(true)
     }
 
     /// Writes the derivatives of the changes in x at the point at which accelerations were solved last.

@@ -652,6 +652,28 @@ impl Solver {
         forces.sensitivity(compiled, state, motion, direction, inputs)
     }
 
+    /// Gives the changes of the efforts of some drivers along each of some directions to `each`, with the
+    /// number of the direction; `inputs` returns the changes of the inputs of forces along it. Far less
+    /// work than the changes of [all forces](Self::force_sensitivity). Returns whether it has done so:
+    /// next to a change point it does nothing.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`force_sensitivity`](Self::force_sensitivity).
+    pub fn effort_changes(
+        &mut self,
+        motion: KnownMotion<'_>,
+        (drivers, directions): (&[DriverId], &[Direction]),
+        forces: &mut Forces,
+        inputs: impl FnMut(usize, &Sensitivity<'_>) -> Vec<f64>,
+        each: impl FnMut(usize, &[f64]),
+    ) -> Result<bool, Error> {
+        let Self {
+            compiled, state, ..
+        } = self;
+        forces.effort_changes((compiled, state), motion, drivers, directions, inputs, each)
+    }
+
     /// Returns the joints and constraints whose reactions redundant constraints leave
     /// indeterminate, known once the solver is [assembled](Self::assemble). The pose is unchanged.
     pub fn indeterminate(&mut self) -> Vec<Origin> {

@@ -14,10 +14,7 @@ use crate::call::Interrupt;
 use crate::error::Failure;
 use crate::events::{EventColumns, event_columns};
 use crate::runner::{BATCH, Runner};
-use crate::scenario::Scenario;
-
-/// Starts of freedoms: of their values or their velocities.
-type Starts = Vec<(DriverId, Order, f64)>;
+use crate::scenario::{Scenario, Start};
 
 /// The rows of many variants.
 #[pyclass]
@@ -170,7 +167,7 @@ impl Variants<'_> {
     /// # Errors
     ///
     /// A value is beyond its limits.
-    fn values(&self, variant: usize) -> Result<(Vec<f64>, Starts), Failure> {
+    fn values(&self, variant: usize) -> Result<(Vec<f64>, Vec<Start>), Failure> {
         let own = &self.scenario.own;
         let mut parameters = self.parameters.to_vec();
         let mut starts = Vec::new();

@@ -262,6 +262,32 @@ impl State {
         Ok(along)
     }
 
+    /// Gives the derivatives of the motion at the pose along each of some directions to `each`, by the
+    /// Jacobian there, which is factorised once; with the state and the number of the direction.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where the pose is singular, and those of `each`.
+    pub(in crate::kinematics) fn sensitivities_here(
+        &mut self,
+        compiled: &CompiledMechanism,
+        (rates, driver_rates): (&Rates, &[Jet]),
+        directions: &[Direction],
+        mut each: impl FnMut(&Self, usize, &Sensitivity<'_>) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let mut factors = self.factorised(compiled)?;
+        let done = directions
+            .iter()
+            .enumerate()
+            .try_for_each(|(k, direction)| {
+                let mut along = self.unsolved(compiled, rates, driver_rates, direction);
+                self.solve_changes(compiled, &mut factors, &mut along, Order::Acceleration);
+                each(self, k, &along)
+            });
+        self.keep_factors(compiled, factors);
+        done
+    }
+
     /// Gives the derivatives of the motion at the pose along each of some directions to `each`. See
     /// [`Solver::sensitivities`](crate::kinematics::Solver::sensitivities).
     ///

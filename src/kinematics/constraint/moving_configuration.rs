@@ -379,6 +379,15 @@ impl VariedConfiguration {
         still
     }
 
+    /// Sets the rates of q, which do not change along the direction; there are no accelerations.
+    pub(in crate::kinematics) fn move_at(&mut self, rates: &[f64]) {
+        let zero = Dual::constant(0.0);
+        for (column, rate) in rates.iter().enumerate() {
+            let rates = [Dual::constant(*rate), zero];
+            self.set_coordinate(column, Varied::new(self.q[column].value, rates));
+        }
+    }
+
     /// Sets the changes of q (order 0), q̇ (order 1) or q̈ (order 2) along the direction.
     pub(in crate::kinematics) fn change(&mut self, order: usize, changes: &[f64]) {
         self.take_changes(order, |column| Some(changes[column]));

@@ -13,7 +13,7 @@ use super::solve::{ForceParts, Forces, KnownMotion, Loads};
 use super::wrench::Wrench;
 use crate::kinematics::analysis::{Direction, Sensitivity};
 use crate::kinematics::constraint::moving_configuration::{
-    Bodies, CurvesAlong, Varied, VariedConfiguration,
+    Bodies, CurvesAlong, Varied, VariedConfiguration, VariedMechanism,
 };
 use crate::kinematics::constraint::{Constraint, Gradient, partial};
 use crate::kinematics::error::{Error, NoLimit};
@@ -243,32 +243,13 @@ impl Forces {
         let system = &compiled.system;
         let mechanism = std::sync::Arc::clone(&self.mechanism);
         let at = sensitivity.motion.mechanism();
-        let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
-        let mut masses = Masses::<Dual>::new(&mechanism, &parameter);
-        for (body, of_body) in masses.bodies.iter_mut().enumerate() {
-            let phi = at.coordinate(3 * body + 2).value;
-            of_body.turn([phi.cos(), phi.sin()]);
-        }
-        let mut probe = Probe {
-            at: at.at_rest(),
-            curves: at.curves,
-            gradient: Gradient::new(),
-        };
-        let (mut demand, sizes, mut potential) =
-            self.varied_loads(state, motion, sensitivity, &mut probe);
-        let mut kinetic = Dual::constant(0.0);
-        for (body, of_body) in masses.bodies.iter().enumerate() {
-            let q = [0, 1, 2].map(|component| at.coordinate(3 * body + component));
-            let velocity = q.map(|q| q.first());
-            let own = of_body.demand(velocity[2], q.map(|q| q.second()), masses.gravity);
-            for (k, own) in own.into_iter().enumerate() {
-                demand[3 * body + k] += own;
-            }
-            let position = [q[0].value, q[1].value];
-            let [own_kinetic, own_potential] = of_body.energies(position, velocity, masses.gravity);
-            kinetic += own_kinetic;
-            potential += own_potential;
-        }
+        let mut probe = sensitivity.probe();
+        let Demand {
+            demand,
+            sizes,
+            energies: [kinetic, potential],
+            masses,
+        } = self.varied_demand(state, motion, sensitivity, &mut probe);
 
         let equations = system.equations().iter();
         let rows: Vec<Entries> = equations
@@ -307,6 +288,109 @@ impl Forces {
             fault: missing.unwrap_or_else(|| sensitivity.motion.fault()),
             change: sensitivity.motion.largest_change(state.at.size()),
         })
+    }
+
+    /// Returns the forces that the bodies demand of joints and drivers along a direction.
+    fn varied_demand(
+        &self,
+        state: &State,
+        motion: KnownMotion<'_>,
+        sensitivity: &Along<'_>,
+        probe: &mut Probe<'_>,
+    ) -> Demand {
+        let at = sensitivity.motion.mechanism();
+        let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
+        let mut masses = Masses::<Dual>::new(&self.mechanism, &parameter);
+        for (body, of_body) in masses.bodies.iter_mut().enumerate() {
+            let phi = at.coordinate(3 * body + 2).value;
+            of_body.turn([phi.cos(), phi.sin()]);
+        }
+        let (mut demand, sizes, mut potential) =
+            self.varied_loads(state, motion, sensitivity, probe);
+        let mut kinetic = Dual::constant(0.0);
+        for (body, of_body) in masses.bodies.iter().enumerate() {
+            let q = [0, 1, 2].map(|component| at.coordinate(3 * body + component));
+            let velocity = q.map(|q| q.first());
+            let own = of_body.demand(velocity[2], q.map(|q| q.second()), masses.gravity);
+            for (k, own) in own.into_iter().enumerate() {
+                demand[3 * body + k] += own;
+            }
+            let position = [q[0].value, q[1].value];
+            let [own_kinetic, own_potential] = of_body.energies(position, velocity, masses.gravity);
+            kinetic += own_kinetic;
+            potential += own_potential;
+        }
+        Demand {
+            demand,
+            sizes,
+            energies: [kinetic, potential],
+            masses,
+        }
+    }
+
+    /// Gives the changes of the efforts of some drivers along each of some directions to `each`, with
+    /// the number of the direction; `inputs` returns those of the inputs of forces. The Jacobian is
+    /// factorised once, and no other force is differentiated: with the effort wᵀ ∂q/∂u of a driver
+    /// and Phi_q δ(∂q/∂u) = −(δPhi_q) ∂q/∂u, δeffort = δwᵀ ∂q/∂u − λᵀ (δPhi_q) ∂q/∂u. Returns whether
+    /// it has done so: not next to a change point.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`sensitivity`](Self::sensitivity), and those of `each`.
+    pub(in crate::kinematics) fn effort_changes(
+        &mut self,
+        (compiled, state): (&mut CompiledMechanism, &mut State),
+        motion: KnownMotion<'_>,
+        drivers: &[DriverId],
+        directions: &[Direction],
+        mut inputs: impl FnMut(usize, &Sensitivity<'_>) -> Vec<f64>,
+        mut each: impl FnMut(usize, &[f64]),
+    ) -> Result<bool, Error> {
+        if near_point(compiled, state).is_some() {
+            return Ok(false);
+        }
+        self.solve_directly(compiled, state, motion, ForceParts::ALL)?;
+        let units = drivers.iter().map(|driver| self.unit(state, *driver));
+        let units: Vec<Vec<f64>> = units.collect();
+        let (rates, driver_rates) = (motion.rates, motion.driver_rates);
+        let compiled = &*compiled;
+        let mut efforts = vec![0.0; drivers.len()];
+        state.sensitivities_here(
+            compiled,
+            (rates, driver_rates),
+            directions,
+            |state, k, along| {
+                let inputs = inputs(k, along);
+                let along = Along {
+                    motion: along,
+                    time: directions[k].time,
+                    inputs: &inputs,
+                };
+                let mut probe = along.probe();
+                let found = self.varied_demand(state, motion, &along, &mut probe);
+                for (effort, unit) in efforts.iter_mut().zip(&units) {
+                    let loads = found.demand.iter().zip(unit);
+                    *effort = loads.map(|(load, unit)| load.first() * unit).sum();
+                    probe.at.move_at(unit);
+                    let moving: VariedMechanism<'_, '_, Varied> = VariedMechanism {
+                        bodies: &probe.at,
+                        curves: probe.curves,
+                    };
+                    let equations = compiled.system.equations().iter();
+                    for (equation, multiplier) in equations.zip(&self.results.multipliers) {
+                        let rate = equation.constraint.along(&moving).first();
+                        *effort -= multiplier * rate.first();
+                    }
+                }
+                if efforts.iter().all(|effort| effort.is_finite()) {
+                    each(k, &efforts);
+                    return Ok(());
+                }
+                let missing = self.missing_derivative(along.motion, &found.masses, &found.sizes);
+                Err(missing.unwrap_or_else(|| along.motion.fault()))
+            },
+        )?;
+        Ok(true)
     }
 
     /// Returns the error of the first number of a mass or force without a finite derivative.
@@ -628,4 +712,27 @@ struct Along<'a> {
     motion: &'a Sensitivity<'a>,
     time: f64,
     inputs: &'a [f64],
+}
+
+impl<'a> Along<'a> {
+    /// Returns the mechanism at rest.
+    fn probe(&self) -> Probe<'a> {
+        let at = self.motion.mechanism();
+        Probe {
+            at: at.bodies.at_rest(),
+            curves: at.curves,
+            gradient: Gradient::new(),
+        }
+    }
+}
+
+/// What the bodies demand of joints and drivers, with its changes.
+struct Demand {
+    /// The generalized forces w.
+    demand: Vec<Dual>,
+    /// Sizes of the forces.
+    sizes: Vec<[Dual; 3]>,
+    /// Kinetic and potential energy.
+    energies: [Dual; 2],
+    masses: Masses<Dual>,
 }
