@@ -121,7 +121,7 @@ def calls(a, folder):
         ),
         "film": lambda: own.run(a.times(), a.drive(), stop="keep").to_html(a.flag()),
         "sweep": lambda: own.sweep(a.swept(), a.times(), a.drive(), a.variables(), False, a.drive()),
-        "range": lambda: own.range(driver(), a.start(), a.parameters()),
+        "range": lambda: own.range(driver(), a.start(), a.parameters(), a.or_odd((None, 1.0))),
         "modes": lambda: own.modes(a.start(), a.parameters()),
         "balance": lambda: own.balance(a.start(), a.parameters(), a.flag()),
         "linearize": lambda: own.linearize(a.start(), a.parameters(), a.variables(), a.flag()),
@@ -142,6 +142,7 @@ def calls(a, folder):
             bounds=a.or_odd({name: (0.05, 0.1) for name in a.settable()}),
         ),
         "loads": lambda: biela.loads(a.or_odd(own.text[: a.rng.integers(len(own.text))])),
+        "library": lambda: biela.library(a.or_odd("four_bar")),
         "load": lambda: biela.load(a.or_odd(folder / "none.toml")),
     }  # fmt: skip
 

@@ -119,6 +119,28 @@ def test_a_range_has_the_extremes_of_measures(four_bar):
     assert least.value <= sampled.min() and sampled.max() <= greatest.value
 
 
+def test_a_range_is_found_between_two_values(four_bar):
+    found = four_bar.range("crank_angle", between=(0.5, 2.0))
+    assert (found.lower.kind, found.upper.kind) == ("bound", "bound")
+    assert_allclose([found.lower.value, found.upper.value], [0.5, 2.0], rtol=1e-14)
+    assert four_bar.range("crank_angle", between=(0.5, None)).lower.value == found.lower.value
+    for between in [(0.5,), (0.5, np.nan), ("a", "b")]:
+        with pytest.raises(biela.UsageError, match="between: expected"):
+            four_bar.range("crank_angle", between=between)
+
+
+def test_the_library_has_the_shipped_mechanisms(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shipped = sorted(path.stem for path in (ROOT / "mechanisms").glob("*.toml"))
+    assert sorted(biela.library()) == shipped
+    cam = biela.library("cam_points")
+    again = pickle.loads(pickle.dumps(cam))
+    assert again.text == cam.text == (ROOT / "mechanisms/cam_points.toml").read_text(encoding="utf-8")
+    assert_allclose(cam.changed().check().residual, 0, atol=1e-9)
+    with pytest.raises(biela.UsageError, match="no shipped mechanism `four_bra`; did you mean `four_bar`"):
+        biela.library("four_bra")
+
+
 def test_a_crank_turns_fully(four_bar):
     found = four_bar.range("crank_angle", drive={"crank_angle": 1.0})
     assert found.turns and found.upper.turns == 1

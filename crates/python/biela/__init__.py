@@ -31,7 +31,7 @@ if TYPE_CHECKING:
         UsageError,
     )
     from .synthesis import Fit, Target, fit, points
-    from .mechanism import Mechanism, check, load, loads
+    from .mechanism import Mechanism, check, library, load, loads
     from .parts import Driver, Event, Force, Freedom, Input, Measure, Parameter
     from .results import (
         ChangePoint,
@@ -89,6 +89,7 @@ __all__ = [
     "__version__",
     "check",
     "fit",
+    "library",
     "load",
     "loads",
     "points",

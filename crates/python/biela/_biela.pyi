@@ -21,10 +21,18 @@ _Held = tuple[str, float, str]
 _Events = tuple[_Places, _Floats, _Places, _Places, _Floats]
 
 def program(arguments: Sequence[str]) -> int: ...
+def shipped() -> list[str]: ...
+def shipped_text(name: str) -> str: ...
 def unknown_name(kind: str, name: str, known: Sequence[str]) -> str: ...
 
 class Mechanism:
-    def __init__(self, name: str, text: str | None = None, path: str | None = None) -> None: ...
+    def __init__(
+        self,
+        name: str,
+        text: str | None = None,
+        path: str | None = None,
+        shipped: str | None = None,
+    ) -> None: ...
     @staticmethod
     def check(
         name: str, text: str | None = None, path: str | None = None, modes: bool = False
@@ -95,7 +103,11 @@ class Mechanism:
     ) -> Targets: ...
     def fitted(self, attempt: Attempt, names: Sequence[str]) -> str: ...
     def range(
-        self, driver: str, motions: _Motions, parameters: _Values
+        self,
+        driver: str,
+        motions: _Motions,
+        parameters: _Values,
+        bounds: Sequence[float | None],
     ) -> tuple[
         _EndRow,
         _EndRow,

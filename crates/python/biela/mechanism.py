@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -95,6 +96,21 @@ def loads(text: str, name: str = "mechanism.toml") -> Mechanism:
     return Mechanism(_biela.Mechanism(name, text, None))
 
 
+@overload
+def library() -> tuple[str, ...]: ...
+@overload
+def library(name: str) -> Mechanism: ...
+def library(name=None):
+    """Returns a mechanism that comes with biela; without a name the names of all.
+
+    >>> library("four_bar").bodies
+    ['crank', 'coupler', 'rocker']
+    """
+    if name is None:
+        return tuple(_biela.shipped())
+    return _reread(_biela.shipped_text(name), None, True, name)
+
+
 def check(source: str | os.PathLike, modes: bool = False) -> Report:
     """Checks a mechanism file, or a text of several lines, and reports all problems.
 
@@ -114,9 +130,12 @@ def check(source: str | os.PathLike, modes: bool = False) -> Report:
 class Mechanism:
     """Mechanism of a file that has no errors. See `load` and `loads`."""
 
-    def __init__(self, inner: _biela.Mechanism, path: str | None = None):
+    def __init__(
+        self, inner: _biela.Mechanism, path: str | None = None, shipped: str | None = None
+    ):
         self._inner = inner
         self._path = path
+        self._shipped = shipped
         if inner.warnings:
             warnings.warn(inner.warnings_text, MechanismWarning, stacklevel=3)
 
@@ -212,7 +231,11 @@ class Mechanism:
         return str(self.draw())
 
     def __reduce__(self):
-        return _reread, (self.text, self._path, self._inner.has_tables)
+        return _reread, (self.text, *self._origin())
+
+    def _origin(self) -> tuple[str | None, bool, str | None]:
+        """Returns where the tables of the text are, for `_reread`."""
+        return self._path, self._inner.has_tables, self._shipped
 
     def check(self, modes: bool = False) -> Report:
         """Assembles the mechanism at its start values and reports the pose.
@@ -364,14 +387,22 @@ class Mechanism:
         )
 
     def range(
-        self, driver: str, drive: Drive | None = None, parameters: Parameters | None = None
+        self,
+        driver: str,
+        drive: Drive | None = None,
+        parameters: Parameters | None = None,
+        between: tuple[float | None, float | None] = (None, None),
     ) -> Range:
-        """Finds how far a driver can go both ways, with the others held.
+        """Finds how far a driver can go both ways, with the others held; `between` two values of it [m
+        or rad], in place of its own `min` and `max`.
 
         >>> str(four_bar.range("crank_angle").upper)
         'no limit'
         """
-        found = self._inner.range(driver, self._start(drive), given_values(parameters))
+        bounds = [None if end is None else float(numbers("between", end)) for end in between]
+        if len(bounds) != 2 or any(end is not None and not np.isfinite(end) for end in bounds):
+            raise UsageError(f"between: expected two finite numbers, or `None` for none; found {between!r}")
+        found = self._inner.range(driver, self._start(drive), given_values(parameters), bounds)
         lower, upper, crossings, values, transmission, rcond, poses, measures, extremes = found
         return Range(
             driver,
@@ -507,7 +538,7 @@ class Mechanism:
         """
         given = given_values(parameters)
         text = self._inner.edited(self._start(drive), given, None)
-        return _reread(text, self._path, self._inner.has_tables)
+        return _reread(text, *self._origin())
 
     def posed(self, mode: Mode) -> Mechanism:
         """Returns the mechanism in another of its assembly modes: the file with other estimates.
@@ -519,7 +550,7 @@ class Mechanism:
         """
         estimates = [_pose_of(mode, body) for body in self.bodies]
         text = self._inner.edited(self._start(None), [], np.concatenate(estimates).tolist())
-        return _reread(text, self._path, self._inner.has_tables)
+        return _reread(text, *self._origin())
 
     def write(self, path: str | os.PathLike) -> Path:
         """Writes the mechanism file and returns its path."""
@@ -597,10 +628,11 @@ def _progress_bar(count: int):
     return needed("tqdm.auto", "progress").tqdm(total=count, unit="variant")
 
 
-def _reread(text: str, path: str | None, has_tables: bool) -> Mechanism:
+def _reread(text: str, path: str | None, has_tables: bool, shipped: str | None = None) -> Mechanism:
     """Returns the mechanism of another text of its file, or in another process; tables are beside
     the file. Warnings were shown when the file was read."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MechanismWarning)
-        inner = _biela.Mechanism(path or "mechanism.toml", text, path if has_tables else None)
-        return Mechanism(inner, path)
+        name = path or f"{shipped or 'mechanism'}.toml"
+        inner = _biela.Mechanism(name, text, path if has_tables else None, shipped)
+        return Mechanism(inner, path, shipped)

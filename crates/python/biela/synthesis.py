@@ -392,7 +392,7 @@ class Problem:
         free = [0 if target.free is None else poses for target, poses in zip(self.targets, self.poses)]
         timing = np.split(best.timing, np.cumsum(free)[:-1])
         return Fit(
-            _reread(text, self.mechanism._path, inner.has_tables),
+            _reread(text, *self.mechanism._origin()),
             dict(zip(self.free, best.parameters.tolist())),
             best.cost,
             best.residuals,

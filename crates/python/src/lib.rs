@@ -57,11 +57,26 @@ fn unknown_name(kind: &str, name: &str, known: Vec<String>) -> String {
     biela_tools::cli::unknown_name(kind, name, &known)
 }
 
+/// Returns the names of the mechanisms that come with biela.
+#[pyfunction]
+fn shipped() -> Vec<&'static str> {
+    biela_tools::cli::shipped().collect()
+}
+
+/// Returns the text of a mechanism that comes with biela.
+#[pyfunction]
+fn shipped_text(name: &str) -> Result<&'static str, Failure> {
+    let found = biela_tools::cli::shipped_text(name).map_err(Failure::Usage);
+    found.map(|(text, _)| text)
+}
+
 #[pymodule]
 fn _biela(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(program, module)?)?;
     module.add_function(wrap_pyfunction!(unknown_name, module)?)?;
+    module.add_function(wrap_pyfunction!(shipped, module)?)?;
+    module.add_function(wrap_pyfunction!(shipped_text, module)?)?;
     #[cfg(debug_assertions)]
     module.add_function(wrap_pyfunction!(defect, module)?)?;
     module.add_class::<mechanism::Mechanism>()?;

@@ -56,16 +56,22 @@ pub(crate) struct Mechanism {
 
 #[pymethods]
 impl Mechanism {
-    /// Reads a text, or the file at `path`.
+    /// Reads a text, or the file at `path`. The tables of a text are those of the mechanism `shipped`
+    /// that comes with biela, or beside the file.
     #[new]
-    #[pyo3(signature = (name, text=None, path=None))]
+    #[pyo3(signature = (name, text=None, path=None, shipped=None))]
     fn new(
         py: Python<'_>,
         name: String,
         text: Option<String>,
         path: Option<PathBuf>,
+        shipped: Option<&str>,
     ) -> PyResult<Self> {
-        let source = source(&name, text, path)?;
+        let mut source = source(&name, text, path)?;
+        if let Some(shipped) = shipped {
+            let (_, tables) = cli::shipped_text(shipped).map_err(Failure::Usage)?;
+            source = source.with_files(tables);
+        }
         match apart(py, || Ok(Model::parse(&source)))? {
             Ok((model, warnings)) => Ok(Self {
                 source,
@@ -323,23 +329,25 @@ impl Mechanism {
         apart(py, || self.text_at(&names, (&attempt.home(), |_| None)))
     }
 
-    /// Finds the range of a driver from the start of a motion.
+    /// Finds the range of a driver from the start of a motion, between bounds if there are some.
     fn range<'py>(
         &self,
         py: Python<'py>,
         driver: &str,
         motions: Motions,
         parameters: Vec<(String, Value)>,
+        bounds: [Option<f64>; 2],
     ) -> Result<RangeRow<'py>, Failure> {
         let (id, range) = apart(py, || {
             let (scenario, parameters) = self.set(motions, parameters)?;
             let id = self.driver_named(driver)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&parameters)?;
-            Ok((
-                id,
-                runner.motion.solver.range(id, &RangeSettings::default()),
-            ))
+            let settings = RangeSettings {
+                bounds,
+                ..RangeSettings::default()
+            };
+            Ok((id, runner.motion.solver.range(id, &settings)))
         })?;
         Ok(range_row(py, &self.model, id, &range))
     }

@@ -726,7 +726,7 @@ impl<'a> Along<'a> {
     }
 }
 
-/// What the bodies demand of joints and drivers, with its changes.
+/// Forces that the bodies demand of joints and drivers, with their changes.
 struct Demand {
     /// The generalized forces w.
     demand: Vec<Dual>,

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::commands::check::json::report_on;
 use super::commands::export::{pack, platform, version};
+use super::commands::new::templates;
 use super::commands::range;
 use super::given::conditions;
 use super::given::conditions::check_limits;
@@ -20,6 +21,28 @@ use crate::drawing::animation::moving_gif;
 use biela::fmi::{Platform, RuntimeLibrary};
 use biela::kinematics::End;
 use biela::mechanism::{DriverId, Mechanism, ParameterId, Source};
+
+/// Returns the names of the mechanisms that come with biela.
+pub fn shipped() -> impl Iterator<Item = &'static str> {
+    templates().map(|(name, ..)| name)
+}
+
+/// Returns the text and the tables of a mechanism that comes with biela, each table with the name of its
+/// file.
+///
+/// # Errors
+///
+/// There is no such mechanism.
+pub fn shipped_text(name: &str) -> Result<(&'static str, Vec<(String, String)>), String> {
+    let found = templates().find(|(known, ..)| *known == name);
+    let Some((_, text, tables)) = found else {
+        let names: Vec<&str> = shipped().collect();
+        return Err(unknown_name("shipped mechanism", name, &names));
+    };
+    let tables = tables.iter();
+    let tables = tables.map(|(file, table)| ((*file).to_owned(), (*table).to_owned()));
+    Ok((text, tables.collect()))
+}
 
 /// Returns the report of `biela check --format json` on a mechanism.
 #[must_use]

@@ -32,7 +32,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 pub use library::{
-    archive, archive_with, check, check_parameter, describe_end, gif, parameter_value, unknown_name,
+    archive, archive_with, check, check_parameter, describe_end, gif, parameter_value, shipped,
+    shipped_text, unknown_name,
 };
 
 /// Planar mechanisms as text files: check them, run them, export them as FMUs.

@@ -46,7 +46,7 @@ macro_rules! template {
 
 /// Returns name, text and tables of each mechanism that comes with biela; a table has the name of its
 /// file and its content.
-pub(super) fn templates() -> impl Iterator<
+pub(in crate::cli) fn templates() -> impl Iterator<
     Item = (
         &'static str,
         &'static str,
