@@ -225,27 +225,14 @@ impl Runner {
         outputs: &[Output],
         balance: bool,
     ) -> Result<StateSpace, Failure> {
-        let Self {
-            motion,
-            scenario,
-            held,
-            ..
-        } = self;
-        if motion.free().is_none() {
+        if self.motion.free().is_none() {
             return Err(Failure::Usage(dynamics::Error::NoFreedom.to_string()));
         }
-        if motion.solution.forces().is_none() {
-            motion.seek_forces();
-        }
-        let part = Part {
-            scenario,
-            held,
-            row: 0,
-        };
+        let (motion, part) = self.at_start();
         if balance {
             motion.balance(&part).map_err(stopped)?;
         }
-        part.loads(scenario.times[0], &mut motion.solution.loads);
+        part.loads(part.scenario.times[0], &mut motion.solution.loads);
         motion.take_rates();
         motion.linearize(outputs).map_err(stopped)
     }
@@ -269,6 +256,19 @@ impl Runner {
         }
     }
 
+    /// Returns the motion, which seeks forces, and what is given at the start.
+    fn at_start(&mut self) -> (&mut Motion, Part<'_>) {
+        if self.motion.solution.forces().is_none() {
+            self.motion.seek_forces();
+        }
+        let part = Part {
+            scenario: &self.scenario,
+            held: &self.held,
+            row: 0,
+        };
+        (&mut self.motion, part)
+    }
+
     /// Moves to the stable equilibrium downhill from the start, or with `all` finds those downhill from
     /// places all over the range of the freedoms.
     ///
@@ -276,20 +276,7 @@ impl Runner {
     ///
     /// There is no freedom, or no equilibrium is found.
     pub(crate) fn balance(&mut self, all: bool) -> Result<Vec<Equilibrium>, Failure> {
-        let Self {
-            motion,
-            scenario,
-            held,
-            ..
-        } = self;
-        if motion.solution.forces().is_none() {
-            motion.seek_forces();
-        }
-        let part = Part {
-            scenario,
-            held,
-            row: 0,
-        };
+        let (motion, part) = self.at_start();
         let found = match all {
             true => motion.balances(&part),
             false => motion.balance(&part).map(|equilibrium| vec![equilibrium]),

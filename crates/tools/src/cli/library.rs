@@ -22,6 +22,9 @@ use biela::fmi::{Platform, RuntimeLibrary};
 use biela::kinematics::End;
 use biela::mechanism::{DriverId, Mechanism, ParameterId, Source};
 
+/// Tables of a mechanism: the names of their files, and their contents.
+type Tables = Vec<(String, String)>;
+
 /// Returns the names of the mechanisms that come with biela.
 pub fn shipped() -> impl Iterator<Item = &'static str> {
     templates().map(|(name, ..)| name)
@@ -33,7 +36,7 @@ pub fn shipped() -> impl Iterator<Item = &'static str> {
 /// # Errors
 ///
 /// There is no such mechanism.
-pub fn shipped_text(name: &str) -> Result<(&'static str, Vec<(String, String)>), String> {
+pub fn shipped_text(name: &str) -> Result<(&'static str, Tables), String> {
     let found = templates().find(|(known, ..)| *known == name);
     let Some((_, text, tables)) = found else {
         let names: Vec<&str> = shipped().collect();
