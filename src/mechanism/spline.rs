@@ -103,20 +103,28 @@ impl<N: Number> Spline<N> {
     /// Returns the segment that contains `x`, the nearest one if `x` is beyond the ends.
     #[must_use]
     pub fn segment(&self, x: f64) -> usize {
-        let inner = &self.knots[1..self.knots.len() - 1];
-        inner.partition_point(|knot| knot.real() <= x)
+        self.laid().segment_of(x)
+    }
+
+    /// Returns the points with the second derivatives.
+    pub(in crate::mechanism) fn laid(&self) -> Laid<'_, N> {
+        Laid {
+            knots: &self.knots,
+            values: &self.values,
+            moments: &self.moments,
+        }
     }
 
     /// Returns the value at `x`, by the cubic of a segment.
     #[must_use]
     pub fn on_segment(&self, segment: usize, x: N) -> N {
-        self.part(segment).value(x)
+        self.laid().part(segment).value(x)
     }
 
     /// Returns the first derivative at `x`, by the cubic of a segment.
     #[must_use]
     pub fn slope_on_segment(&self, segment: usize, x: N) -> N {
-        self.part(segment).slope(x)
+        self.laid().part(segment).slope(x)
     }
 
     /// Returns the second and third derivatives at `x`, by the cubic of a segment.
@@ -124,7 +132,7 @@ impl<N: Number> Spline<N> {
     pub fn curvature_on_segment(&self, segment: usize, x: N) -> [N; 2] {
         let Segment {
             abscissas, moments, ..
-        } = self.part(segment);
+        } = self.laid().part(segment);
         let third = (moments[1] - moments[0]) / (abscissas[1] - abscissas[0]);
         [moments[0] + (x - abscissas[0]) * third, third]
     }
@@ -291,7 +299,15 @@ pub(in crate::mechanism) trait Knots<N: Number> {
     }
 }
 
-impl<N: Number> Knots<N> for Spline<N> {
+/// Points on their own numbers.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::mechanism) struct Laid<'a, N> {
+    pub(in crate::mechanism) knots: &'a [N],
+    pub(in crate::mechanism) values: &'a [N],
+    pub(in crate::mechanism) moments: &'a [N],
+}
+
+impl<N: Number> Knots<N> for Laid<'_, N> {
     fn count(&self) -> usize {
         self.knots.len()
     }
@@ -307,14 +323,15 @@ impl<N: Number> Knots<N> for Spline<N> {
     fn part(&self, segment: usize) -> Segment<N> {
         let ends = |of: &[N]| [of[segment], of[segment + 1]];
         Segment {
-            abscissas: ends(&self.knots),
-            ordinates: ends(&self.values),
-            moments: ends(&self.moments),
+            abscissas: ends(self.knots),
+            ordinates: ends(self.values),
+            moments: ends(self.moments),
         }
     }
 
     fn segment_of(&self, x: f64) -> usize {
-        self.segment(x)
+        let inner = &self.knots[1..self.knots.len() - 1];
+        inner.partition_point(|knot| knot.real() <= x)
     }
 }
 
@@ -336,7 +353,7 @@ impl<N: Number> Knots<N> for Fixed<'_> {
     }
 
     fn part(&self, segment: usize) -> Segment<N> {
-        let part = self.0.part(segment);
+        let part = self.0.laid().part(segment);
         let on_numbers = |of: [f64; 2]| of.map(N::constant);
         Segment {
             abscissas: on_numbers(part.abscissas),

@@ -1,7 +1,7 @@
 //! Functions through points: of a motion, of a coupling's law, or called by name.
 
 use super::table::Table;
-use crate::mechanism::spline::{Fixed, Knots, Points, Segment};
+use crate::mechanism::spline::{Fixed, Knots, Laid, Points, Segment};
 use crate::mechanism::{Ends, Interval, Law, Number, ParameterId, Spline};
 
 /// A function of one argument through given points.
@@ -277,16 +277,12 @@ impl CalledPoints {
     // Inlined, its arrays would be on the stack of each expression.
     #[inline(never)]
     fn evaluate_moving<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, x: N) -> N {
-        let zeros = [N::constant(0.0); MOST_MOVING_POINTS];
-        let mut moving = MovingPoints {
-            count: self.function.table.points.len(),
-            knots: zeros,
-            values: zeros,
-            moments: zeros,
-        };
-        let count = moving.count;
         let table = &self.function.table;
-        let (knots, values) = (&mut moving.knots[..count], &mut moving.values[..count]);
+        let count = table.points.len();
+        let zeros = [N::constant(0.0); MOST_MOVING_POINTS];
+        let (mut knots, mut values, mut moments) = (zeros, zeros, zeros);
+        let [knots, values, moments] =
+            [&mut knots, &mut values, &mut moments].map(|numbers| &mut numbers[..count]);
         table.write(parameter, knots, values);
         let rises = |pair: &[N]| pair[0].real() < pair[1].real();
         if !knots.windows(2).all(rises) {
@@ -299,10 +295,14 @@ impl CalledPoints {
                 ends: self.function.ends,
             };
             let (mut upper, mut corner) = (zeros, zeros);
-            let work = [&mut upper[..count], &mut corner[..count]];
-            points.fit(&mut moving.moments[..count], work);
+            points.fit(moments, [&mut upper[..count], &mut corner[..count]]);
         }
-        self.function.evaluate(&moving, x)
+        let laid = Laid {
+            knots,
+            values,
+            moments,
+        };
+        self.function.evaluate(&laid, x)
     }
 
     /// Returns the abscissas at which the function has a corner or jumps, for these parameters: the
@@ -337,42 +337,6 @@ impl CalledPoints {
             _ => 0.0,
         };
         nearest((first..end_point).map(|point| abscissa(point) + lap), x)
-    }
-}
-
-/// A few points that parameters move, with the second derivatives of a spline.
-struct MovingPoints<N> {
-    count: usize,
-    knots: [N; MOST_MOVING_POINTS],
-    values: [N; MOST_MOVING_POINTS],
-    moments: [N; MOST_MOVING_POINTS],
-}
-
-impl<N: Number> Knots<N> for MovingPoints<N> {
-    fn count(&self) -> usize {
-        self.count
-    }
-
-    fn abscissa(&self, point: usize) -> N {
-        self.knots[point]
-    }
-
-    fn ordinate(&self, point: usize) -> N {
-        self.values[point]
-    }
-
-    fn part(&self, segment: usize) -> Segment<N> {
-        let ends = |of: &[N]| [of[segment], of[segment + 1]];
-        Segment {
-            abscissas: ends(&self.knots),
-            ordinates: ends(&self.values),
-            moments: ends(&self.moments),
-        }
-    }
-
-    fn segment_of(&self, x: f64) -> usize {
-        let inner = &self.knots[1..self.count - 1];
-        inner.partition_point(|knot| knot.real() <= x)
     }
 }
 

@@ -100,7 +100,9 @@ impl<N: Number> MotionInForce<N> {
             (Motion::Expression(expression), _) => {
                 expression.evaluate(&|p| self.parameters[p.index()], t)
             }
-            (Motion::Table(motion), Some(spline)) if self.valid => motion.evaluate(spline, t),
+            (Motion::Table(motion), Some(spline)) if self.valid => {
+                motion.evaluate(&spline.laid(), t)
+            }
             (Motion::Table(_), _) => N::constant(f64::NAN),
         }
     }

@@ -20,20 +20,11 @@ impl MotionInForce<Enclosed> {
     pub fn enclose(&self, t: Enclosed) -> Option<Enclosed> {
         match (&self.motion, &self.spline) {
             (Motion::Expression(_), _) => Some(self.evaluate(t)),
-            (Motion::Table(motion), Some(spline)) if spline.rises() => {
-                Some(motion.evaluate(spline, t))
+            (Motion::Table(motion), Some(spline)) if spline.laid().rise() => {
+                Some(motion.evaluate(&spline.laid(), t))
             }
             (Motion::Table(_), _) => None,
         }
-    }
-}
-
-impl Spline<Enclosed> {
-    /// Returns whether each abscissa is larger than the one before all the way.
-    pub(in crate::mechanism) fn rises(&self) -> bool {
-        let knots = self.knots().windows(2);
-        let mut apart = knots.map(|pair| pair[0].value.high < pair[1].value.low);
-        apart.all(|apart| apart)
     }
 }
 
@@ -59,7 +50,7 @@ impl Interpolation {
                 }
                 Self::Law(law) => law.enclose(spline, segment, x)?,
                 Self::Linear | Self::Steps => {
-                    let part = spline.part(segment);
+                    let part = spline.laid().part(segment);
                     let slope = self.slope_at(&part, 0);
                     [self.on(&part, x), slope]
                 }

@@ -206,7 +206,7 @@ impl ClosedPoints<Jet3<Interval>> {
 
     /// Encloses R and R′ for a moving polar angle; `None` where the points may not rise.
     pub(super) fn enclose(&self, theta: Jet3<Interval>) -> Option<[Jet3<Interval>; 2]> {
-        if !self.spline.rises() {
+        if !self.spline.laid().rise() {
             return None;
         }
         let start = self.spline.knots()[0].value;
@@ -225,7 +225,7 @@ impl ClosedPoints<Jet3<Dual>> {
         let turn = start + (theta.value - start).rem_euclid(TAU);
         let theta = Jet3::variable(Dual::new(turn, theta.derivatives));
         let segment = spline.segment(turn);
-        self.interpolation.on(&spline.part(segment), theta)
+        self.interpolation.on(&spline.laid().part(segment), theta)
     }
 }
 
