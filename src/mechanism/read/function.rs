@@ -79,10 +79,9 @@ impl<'a> Kind<'a> for Count {
     type Value = usize;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<usize> {
-        match syntax::number(item.value.get_ref()) {
-            Some(1.0) => return Some(1),
-            Some(2.0) => return Some(2),
-            _ => {}
+        let count = one_or_two(item.value);
+        if count.is_some() {
+            return count;
         }
         let message = "points make a function of one argument or of two";
         context
@@ -215,40 +214,34 @@ impl<'a> Context<'a> {
         self.functions_used = vec![false; entries.len()];
     }
 
-    /// Reads a function, which lacks what others that it calls bring in.
+    /// Reads a function, which lacks what others that it calls bring in; a parameter may be listed twice.
     fn function_draft(&mut self, entry: Entry<'a>) -> Draft<'a> {
         let mut span = entry.value.span();
         let read = self.function(entry, &mut span);
-        let function = read.map(|(arguments, body, description)| Function {
-            name: entry.name().to_owned(),
-            description,
-            arguments,
-            parameters: match &body {
-                FunctionBody::Formula(formula) => formula.parameters().collect(),
+        let function = read.map(|(arguments, body, description)| {
+            let (parameters, first_jump, has_pieces) = match &body {
+                FunctionBody::Formula(formula) => {
+                    (formula.parameters().collect(), None, formula.has_pieces())
+                }
                 FunctionBody::Points(points) => {
-                    let mut used: Vec<_> = points.function().table.parameters().collect();
-                    used.sort_unstable();
-                    used.dedup();
-                    used.into()
+                    let function = points.function();
+                    let parameters = function.table.parameters().collect();
+                    (parameters, function.first_jump(), false)
                 }
                 FunctionBody::Grid(grid) => {
-                    let factors = grid.scale.iter().flat_map(Expression::parameters);
-                    let mut used: Vec<_> = factors.collect();
-                    used.sort_unstable();
-                    used.dedup();
-                    used.into()
+                    let parameters = grid.scale.iter().flat_map(Expression::parameters);
+                    (parameters.collect(), grid.first_jump(), false)
                 }
-            },
-            first_jump: match &body {
-                FunctionBody::Formula(_) => None,
-                FunctionBody::Points(points) => points.function().first_jump(),
-                FunctionBody::Grid(grid) => grid.first_jump(),
-            },
-            has_pieces: match &body {
-                FunctionBody::Formula(formula) => formula.has_pieces(),
-                FunctionBody::Points(_) | FunctionBody::Grid(_) => false,
-            },
-            body,
+            };
+            Function {
+                name: entry.name().to_owned(),
+                description,
+                arguments,
+                body,
+                parameters,
+                first_jump,
+                has_pieces,
+            }
         });
         Draft {
             entry,
@@ -500,11 +493,16 @@ fn number_of_arguments(entry: &Entry<'_>) -> Option<usize> {
         };
     }
     match table.get("arguments") {
-        Some(count) => match syntax::number(count.get_ref()) {
-            Some(1.0) => Some(1),
-            Some(2.0) => Some(2),
-            _ => None,
-        },
+        Some(count) => one_or_two(count),
         None => Some(1),
+    }
+}
+
+/// Returns a number of arguments of a function through points.
+fn one_or_two(value: &Value<'_>) -> Option<usize> {
+    match syntax::number(value.get_ref()) {
+        Some(1.0) => Some(1),
+        Some(2.0) => Some(2),
+        _ => None,
     }
 }

@@ -35,10 +35,7 @@ impl<'a> Context<'a> {
             name: entry.name().to_owned(),
             description: keys.description.value.unwrap_or_default(),
             unit,
-            start: match keys.start.key {
-                Some(_) => keys.start.value?.value?,
-                None => 0.0,
-            },
+            start: keys.start.number_or(0.0)?,
             min,
             max,
             given: None,
