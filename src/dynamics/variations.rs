@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use super::equations::Equations;
 use super::error::Error;
 use super::given::Given;
+use super::passive::PassiveForces;
 use super::triangular::{ascend, descend};
 use crate::kinematics::{
     Direction, ForceQuantity, ForceSensitivity, KnownMotion, Rates, Sensitivity, Solver,
@@ -111,9 +112,7 @@ impl Equations {
             for (change, effort) in accelerations.iter_mut().zip(efforts) {
                 *change = -effort;
             }
-            descend(factor, accelerations);
-            passive.hold_changes(coordinates, accelerations, &mut holding);
-            ascend(factor, accelerations);
+            solve_changes(passive, coordinates, factor, accelerations, &mut holding);
             for (change, freedom) in accelerations.iter().zip(&*freedoms) {
                 direction.drivers[freedom.index()].derivatives[1] = *change;
             }
@@ -205,9 +204,8 @@ impl Equations {
         for (change, freedom) in accelerations.iter_mut().zip(&*freedoms) {
             *change = -changes.change(ForceQuantity::Effort(*freedom))?;
         }
-        descend(factor, accelerations);
-        passive.hold_changes(&coordinates, accelerations, &mut loads[of_passive..]);
-        ascend(factor, accelerations);
+        let holding = &mut loads[of_passive..];
+        solve_changes(passive, &coordinates, factor, accelerations, holding);
         for (change, freedom) in accelerations.iter().zip(&*freedoms) {
             direction.drivers[freedom.index()].derivatives[1] = *change;
         }
@@ -282,4 +280,18 @@ impl Equations {
         }
         loads
     }
+}
+
+/// Solves J δü = −δeffort, whose right side stands in `accelerations`, and writes the changes of the
+/// passive forces that hold coordinates.
+fn solve_changes(
+    passive: &mut PassiveForces,
+    coordinates: &[Jet],
+    factor: &DMatrix<f64>,
+    accelerations: &mut [f64],
+    holding: &mut [f64],
+) {
+    descend(factor, accelerations);
+    passive.hold_changes(coordinates, accelerations, holding);
+    ascend(factor, accelerations);
 }
