@@ -100,8 +100,7 @@ impl Host {
             Err(error) => return json!({ "error": error.to_string() }),
         };
         let answer = match Request::deserialize(&asked) {
-            Ok(Request::OfStudio) => return self.studio.answer_to(&asked),
-            Ok(own) => answer(own),
+            Ok(request) => answer(&mut self.studio, &asked, request),
             Err(error) => return json!({ "error": error.to_string() }),
         };
         answer.unwrap_or_else(|problems| json!({ "problems": problems }))
@@ -116,7 +115,12 @@ impl Host {
     }
 }
 
-fn answer(request: Request) -> Result<Value, String> {
+/// Answers a request, which is one of the studio where `asked` is none of those here.
+fn answer(
+    studio: &mut biela_tools::studio::Host,
+    asked: &Value,
+    request: Request,
+) -> Result<Value, String> {
     match request {
         Request::Export {
             name,
@@ -150,7 +154,7 @@ fn answer(request: Request) -> Result<Value, String> {
             content,
             length,
         } => import(&name, &content, length.as_deref()),
-        Request::OfStudio => Ok(Value::Null),
+        Request::OfStudio => Ok(studio.answer_to(asked)),
     }
 }
 
