@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use crate::write::TomlText;
-use crate::write::WrittenText;
+use crate::write::{TomlText, WrittenText};
 use biela::mechanism::names_in;
 
 /// Keys whose texts are words or are for the reader; they refer to nothing in the file.

@@ -14,8 +14,7 @@ mod places;
 mod section;
 mod text;
 
-pub use number::in_unit;
-pub use number::{NumberInUnit, degrees, estimate, largest_coordinate};
+pub use number::{NumberInUnit, degrees, estimate, in_unit, largest_coordinate};
 pub use places::WrittenText;
 pub use section::{in_braces, in_lines, sections};
 pub use text::TomlText;
