@@ -43,7 +43,7 @@
 //! and acceleration from two linear systems with the same matrix (Eq. 3.6.10 and 3.6.11).
 //!
 //! ```
-//! use biela::kinematics::{Curve, Path, Rates, Solver};
+//! use biela::kinematics::{DriverPath, Path, Rates, Solver};
 //! use biela::mechanism::{Jet, Mechanism, Source};
 //!
 //! let file = Source::new("pendulum.toml", include_str!("../mechanisms/pendulum.toml"));
@@ -53,7 +53,7 @@
 //! let mut solver = Solver::new(mechanism.into())?;
 //! let mut path = Path::new(solver.mechanism());
 //! solver.assemble(&path)?;
-//! path.curves[0] = Curve::Input {
+//! path.driver_paths[0] = DriverPath::Input {
 //!     position: 0.2,
 //!     velocity: 0.0,
 //!     acceleration: 0.0,

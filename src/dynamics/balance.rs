@@ -17,7 +17,7 @@ use super::held::Held;
 use super::motion::FreeMotion;
 use super::passive::Mode;
 use super::statics::{Side, Statics, longest};
-use crate::kinematics::{Blocked, Curve, Path, Rates, Reason, Solution, Solver};
+use crate::kinematics::{Blocked, DriverPath, Path, Rates, Reason, Solution, Solver};
 use crate::mechanism::{DriverId, Order, Signal};
 
 /// Longest change of an angle \[rad\] or of a length, in sizes of the mechanism, in one step. Sines are
@@ -266,12 +266,12 @@ impl FreeMotion {
         path.start = pose.time;
         path.from.copy_from_slice(&pose.parameters);
         path.to.copy_from_slice(&pose.parameters);
-        for (curve, now) in path.curves.iter_mut().zip(&pose.drivers) {
-            *curve = Curve::held(*now, *now);
+        for (driver_path, now) in path.driver_paths.iter_mut().zip(&pose.drivers) {
+            *driver_path = DriverPath::held(*now, *now);
         }
         for (freedom, change) in self.freedoms().iter().zip(changes) {
             let now = pose.drivers[freedom.index()];
-            path.curves[freedom.index()] = Curve::held(now + change, now);
+            path.driver_paths[freedom.index()] = DriverPath::held(now + change, now);
         }
         let tracked = match watches_stops {
             true => solver.track(&path),

@@ -11,7 +11,7 @@ use super::triangular::{ascend, descend};
 use super::turns::Turns;
 use super::watch::{Verdict, Watch};
 use crate::kinematics::{
-    Blocked, Curve, Direction, EquationsOfMotion, ForceParts, Forces, KnownMotion, Path, Pose,
+    Blocked, Direction, DriverPath, EquationsOfMotion, ForceParts, Forces, KnownMotion, Path, Pose,
     Rates, Reason, Solution, Solver, SolverChoices,
 };
 use crate::mechanism::{DriverId, Jet, Mechanism, Order};
@@ -325,19 +325,19 @@ impl Equations {
         self.path.to.copy_from_slice(&self.pose.parameters);
         let ends = self.accepted.drivers.iter().zip(&self.point.drivers);
         let definitions = solver.mechanism().drivers.iter().enumerate();
-        for ((curve, ends), (index, driver)) in
-            self.path.curves.iter_mut().zip(ends).zip(definitions)
+        for ((driver_path, ends), (index, driver)) in
+            self.path.driver_paths.iter_mut().zip(ends).zip(definitions)
         {
             let by_part = |jet: &Jet| Jet::new(jet.value, [h * jet.first(), h * h * jet.second()]);
-            *curve = if h == 0.0 {
-                Curve::held(ends.1.value, ends.0.value)
+            *driver_path = if h == 0.0 {
+                DriverPath::held(ends.1.value, ends.0.value)
             } else if driver.is_free() {
-                Curve::through(by_part(ends.0), by_part(ends.1))
+                DriverPath::through(by_part(ends.0), by_part(ends.1))
             } else if driver.motion().is_some() {
-                Curve::Motion
+                DriverPath::Motion
             } else {
                 let at = |part: f64| given.driver(DriverId(index), start + part * h).value;
-                Curve::cubic([ends.0.value, at(1.0 / 3.0), at(2.0 / 3.0), ends.1.value])
+                DriverPath::cubic([ends.0.value, at(1.0 / 3.0), at(2.0 / 3.0), ends.1.value])
             };
         }
     }
@@ -407,9 +407,9 @@ impl Equations {
         self.path.from.copy_from_slice(&pose.parameters);
         let to = parameters.unwrap_or(&pose.parameters);
         self.path.to.copy_from_slice(to);
-        let curves = self.path.curves.iter_mut().zip(&self.point.drivers);
-        for ((curve, driver), now) in curves.zip(&pose.drivers) {
-            *curve = Curve::held(driver.value, *now);
+        let driver_paths = self.path.driver_paths.iter_mut().zip(&self.point.drivers);
+        for ((driver_path, driver), now) in driver_paths.zip(&pose.drivers) {
+            *driver_path = DriverPath::held(driver.value, *now);
         }
         // A trial may lie beyond a stop; only what is accepted is part of the motion.
         let tracked = match parameters {

@@ -24,8 +24,8 @@ pub struct GivenByPath<'a, F> {
 
 impl<F: Fn(usize, f64) -> f64> Given for GivenByPath<'_, F> {
     fn driver(&self, driver: DriverId, time: f64) -> Jet {
-        let curve = self.path.curves[driver.index()];
-        let at = curve.input_after(time - self.path.start);
+        let driver_path = self.path.driver_paths[driver.index()];
+        let at = driver_path.input_after(time - self.path.start);
         at.expect("the curve of an input is a polynomial in time")
     }
 

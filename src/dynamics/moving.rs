@@ -21,7 +21,7 @@ use crate::mechanism::{DriverId, Mechanism};
 ///
 /// ```
 /// use biela::dynamics::Motion;
-/// use biela::kinematics::{Curve, Path, Solver};
+/// use biela::kinematics::{DriverPath, Path, Solver};
 /// use biela::mechanism::{Mechanism, Source};
 ///
 /// let text = include_str!("../../mechanisms/four_bar.toml");
@@ -30,7 +30,7 @@ use crate::mechanism::{DriverId, Mechanism};
 /// let mut motion = Motion::new(Solver::assembled(mechanism.into(), &path).unwrap());
 /// // The crank turns by 0.1 rad in 0.01 s.
 /// let now = motion.pose().drivers[0];
-/// path.curves[0] = Curve::held(now + 0.1, now);
+/// path.driver_paths[0] = DriverPath::held(now + 0.1, now);
 /// path.duration = 0.01;
 /// motion.follow(&path).unwrap();
 /// assert_eq!(motion.pose().drivers[0], now + 0.1);

@@ -91,7 +91,7 @@ pub use forces::{
 pub use linear::PivotOrder;
 pub(crate) use linear::{DenseLu, Factors, Singular};
 pub use origin::Origin;
-pub use path::{Curve, Path, Rates};
+pub use path::{DriverPath, Path, Rates};
 pub use plan::{BlockChoices, Crossing, Polynomial};
 pub use redundancy::{Redundancy, Undriven, undriven};
 pub use results::{ForceNeed, Output, OutputSource, Solution, omitted_reactions};

@@ -10,7 +10,7 @@ pub(super) mod generated;
 
 use super::constraint::Gradient;
 use super::system::Target;
-use super::{Curve, Path, Rates, Solver};
+use super::{DriverPath, Path, Rates, Solver};
 use crate::mechanism::{Jet, Mechanism, Source};
 use proptest::prelude::*;
 
@@ -106,13 +106,13 @@ fn move_on(solver: &mut Solver, path: &mut Path, by: f64) {
     path.from.copy_from_slice(&solver.pose().parameters);
     path.to.copy_from_slice(&solver.pose().parameters);
     path.duration = by.abs();
-    for (k, (curve, now)) in path
-        .curves
+    for (k, (driver_path, now)) in path
+        .driver_paths
         .iter_mut()
         .zip(&solver.pose().drivers)
         .enumerate()
     {
-        if let Curve::Input { position, jump, .. } = curve {
+        if let DriverPath::Input { position, jump, .. } = driver_path {
             *position = now + by / (k + 1) as f64;
             *jump = now - *position;
         }

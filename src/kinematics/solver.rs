@@ -14,7 +14,7 @@ use super::forces::{
     self, EquationsOfMotion, ForceParts, ForceSensitivity, Forces, Friction, KnownMotion, LiftOff,
 };
 use super::origin::Origin;
-use super::path::{Curve, Path, Rates};
+use super::path::{DriverPath, Path, Rates};
 use super::plan::Crossing;
 use super::plan::compiled_mechanism::CompiledMechanism;
 use super::redundancy::{self, Redundancy};
@@ -25,8 +25,8 @@ use super::state::{Pose, SolverChoices, State};
 use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{
-    BodyId, Coordinate, DriverId, Indeterminate, Jet, Load, MarkerId, Mechanism, Motion, Order,
-    ParameterId,
+    BodyId, Coordinate, DriverId, Indeterminate, Jet, Load, MarkerId, Mechanism, Order,
+    ParameterId, PrescribedMotion,
 };
 
 /// Solves position, velocity and acceleration of one mechanism.
@@ -175,15 +175,15 @@ impl Solver {
         let mut path = Path::new(own);
         path.duration = time - home.time;
         path.to.copy_from_slice(parameters);
-        for (index, curve) in path.curves.iter_mut().enumerate() {
+        for (index, driver_path) in path.driver_paths.iter_mut().enumerate() {
             let motions = [own, driven].map(|mechanism| mechanism.drivers[index].motion());
             let given = match motions {
                 // A motion of the file is followed as such.
                 [
-                    Some(Motion::Expression(own)),
-                    Some(Motion::Expression(same)),
+                    Some(PrescribedMotion::Expression(own)),
+                    Some(PrescribedMotion::Expression(same)),
                 ] if own == same => None,
-                [_, Some(Motion::Expression(motion))] => {
+                [_, Some(PrescribedMotion::Expression(motion))] => {
                     Some(motion.evaluate(&|p: ParameterId| parameters[p.index()], time))
                 }
                 _ => value(DriverId(index)).or_else(|| {
@@ -192,7 +192,7 @@ impl Solver {
                 }),
             };
             if let Some(position) = given {
-                *curve = Curve::held(position, home.drivers[index]);
+                *driver_path = DriverPath::held(position, home.drivers[index]);
             }
         }
         path

@@ -7,7 +7,7 @@ use super::constraint::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity};
 use super::error::Error;
 use super::newton::Rejected;
-use super::path::{Curve, Motions, Path, Rates};
+use super::path::{DriverPath, Motions, Path, Rates};
 use super::plan::compiled_mechanism::CompiledMechanism;
 use super::plan::{BlockChoices, BlockState, Crossing, JacobianFactors};
 use super::system::{System, Targets, Values};
@@ -37,9 +37,9 @@ impl Pose {
         path.duration = 0.0;
         path.from.clone_from(&self.parameters);
         path.to.clone_from(&self.parameters);
-        for (curve, value) in path.curves.iter_mut().zip(&self.drivers) {
-            if let Curve::Input { .. } = curve {
-                *curve = Curve::held(*value, *value);
+        for (driver_path, value) in path.driver_paths.iter_mut().zip(&self.drivers) {
+            if let DriverPath::Input { .. } = driver_path {
+                *driver_path = DriverPath::held(*value, *value);
             }
         }
     }

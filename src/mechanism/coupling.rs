@@ -1,6 +1,6 @@
 //! Equations between coordinates.
 
-use super::{Coordinate, Expression, Motion, Play, Variable};
+use super::{Coordinate, Expression, Play, PrescribedMotion, Variable};
 
 /// Most coordinates in one equation.
 pub const MOST_COUPLED: usize = 8;
@@ -16,7 +16,7 @@ pub struct CoordinateEquation {
     /// left − right, over [`Variable::Coordinate`]s by their places in the list.
     pub difference: Expression,
     /// The table that it calls as the function `law`.
-    pub law: Option<Motion>,
+    pub law: Option<PrescribedMotion>,
     /// Value at which left − right is held.
     pub phase: Phase,
     /// The gap in which left − right is free, in free motion.

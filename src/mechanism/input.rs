@@ -1,6 +1,6 @@
 //! Inputs: numbers that come from outside while a mechanism moves.
 
-use super::{Driver, DriverSource, Expression, Load, Mechanism, Motion, Unit};
+use super::{Driver, DriverSource, Expression, Load, Mechanism, PrescribedMotion, Unit};
 
 /// A number that comes from outside, such as a voltage: an FMI input.
 #[derive(Clone, Debug)]
@@ -108,7 +108,7 @@ impl Mechanism {
             let motion = follows.with_inputs(in_place);
             let is_possible = motion.is_some();
             if let Some(motion) = motion {
-                driver.source = DriverSource::Motion(Motion::Expression(motion));
+                driver.source = DriverSource::Motion(PrescribedMotion::Expression(motion));
             }
             is_possible
         })

@@ -86,7 +86,7 @@ pub use friction::{Bearing, BearingShape, FrictionLaw};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use input::{Input, LoadInput, LoadTarget};
 pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};
-pub use motion::{Law, Motion, MotionInForce, not_finite};
+pub use motion::{Law, MotionInForce, PrescribedMotion, not_finite};
 pub use names::{did_you_mean, help, is_identifier, similar_identifier};
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::{DerivedParameter, Parameter};
@@ -249,7 +249,7 @@ pub struct Driver {
 impl Driver {
     /// Returns the prescribed motion in force, `None` for a driver that follows given values.
     #[must_use]
-    pub fn motion(&self) -> Option<&Motion> {
+    pub fn motion(&self) -> Option<&PrescribedMotion> {
         match &self.source {
             DriverSource::Input { .. } | DriverSource::Free { .. } => None,
             DriverSource::Motion(motion) => Some(motion),
@@ -322,7 +322,7 @@ pub enum DriverSource {
         start: f64,
     },
     /// Prescribed motion.
-    Motion(Motion),
+    Motion(PrescribedMotion),
     /// The forces, of which it takes none: the coordinate is a freedom.
     Free {
         /// Value at the start, which defines the assembly mode \[m or rad\], evaluated with the
@@ -396,7 +396,7 @@ impl Mechanism {
     #[must_use]
     pub fn uses_time(&self) -> bool {
         let mut motions = self.drivers.iter().filter_map(Driver::motion);
-        motions.any(Motion::uses_time)
+        motions.any(PrescribedMotion::uses_time)
     }
 
     /// Returns a marker's name with its body's: `crank.A`, `ground.O2`.

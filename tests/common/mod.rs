@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Quantity, Sink, Status};
-use biela::kinematics::{Curve, Error, Path, Solver};
+use biela::kinematics::{DriverPath, Error, Path, Solver};
 use biela::mechanism::{Expression, Mechanism, Source};
 
 pub(crate) type Instance = biela::fmi::Instance<MechanismModel>;
@@ -129,7 +129,7 @@ pub(crate) fn straight_to(solver: &Solver, path: &mut Path, target: f64) {
     let now = solver.pose().drivers[0];
     path.start = solver.pose().time;
     path.duration = 0.0;
-    path.curves[0] = Curve::Input {
+    path.driver_paths[0] = DriverPath::Input {
         position: target,
         velocity: 0.0,
         acceleration: 0.0,

@@ -3,7 +3,7 @@
 use crate::common::exact::{EXACT, Errors};
 use crate::common::{assembled, parse, shipped, straight_to};
 use crate::generated::{Ground, chain};
-use biela::kinematics::{Curve, Direction, InstantCentre, Rates, Reason, Solver};
+use biela::kinematics::{Direction, DriverPath, InstantCentre, Rates, Reason, Solver};
 use biela::mechanism::{BodyId, DriverId, Jet, Order, ParameterId, Signal};
 
 /// The solution is right to the rounding of the equations (some eps of the size) times the
@@ -29,7 +29,7 @@ fn the_four_systems_move_as_their_closed_forms_say() {
             let t = h * f64::from(step);
             path.start = t;
             path.duration = h;
-            path.curves[0] = Curve::Input {
+            path.driver_paths[0] = DriverPath::Input {
                 position: from + 0.5 * acceleration * t * t,
                 velocity: acceleration * t,
                 acceleration,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::common::{assembled, parse, shipped, straight_to};
 use biela::kinematics::{
-    Curve, Direction, Error, Fit, Output, OutputSource, Path, Reason, Solution, Solver,
+    Direction, DriverPath, Error, Fit, Output, OutputSource, Path, Reason, Solution, Solver,
 };
 use biela::mechanism::{Jet, Mechanism, ParameterId, Signal};
 
@@ -212,8 +212,8 @@ fn jumps_of_two_coordinates_do_not_cancel() {
         b = { coordinate = 'angle', markers = ['ground.B', 'second.B'], start = 1.1 }\n\
         [measures]\nc = { coordinate = 'angle', markers = ['ground.C', 'third.C'] }\n";
     let (mut solver, mut path) = assembled(&parse(text));
-    for (curve, [from, to]) in path.curves.iter_mut().zip([[0.9, 1.1], [1.1, 0.9]]) {
-        *curve = Curve::Input {
+    for (driver_path, [from, to]) in path.driver_paths.iter_mut().zip([[0.9, 1.1], [1.1, 0.9]]) {
+        *driver_path = DriverPath::Input {
             position: to,
             velocity: 0.0,
             acceleration: 0.0,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use biela::kinematics::{Curve, Path, Solver};
+use biela::kinematics::{DriverPath, Path, Solver};
 
 use crate::common::{assembled, parse};
 
@@ -26,7 +26,7 @@ impl Machine {
         self.solver.pose().set_path(&mut self.path);
         for (index, value) in values.iter().enumerate() {
             let from = self.solver.pose().drivers[index];
-            self.path.curves[index] = Curve::held(*value, from);
+            self.path.driver_paths[index] = DriverPath::held(*value, from);
         }
         self.solver
             .track(&self.path)

@@ -1,6 +1,6 @@
 //! Ropes: lengths and radii that move, and pulleys that ropes leave.
 
-use biela::kinematics::{Curve, Error, GeometryWarningKind, Reason};
+use biela::kinematics::{DriverPath, Error, GeometryWarningKind, Reason};
 
 use crate::common::{assembled, parse, shipped, straight_to};
 
@@ -126,7 +126,7 @@ fn a_rope_that_winds_up_stops_where_its_arc_ends() {
         "#,
     );
     let (mut solver, mut path) = assembled(&mechanism);
-    path.curves[0] = Curve::held(7.0, 0.0);
+    path.driver_paths[0] = DriverPath::held(7.0, 0.0);
     let blocked = solver.track(&path).expect_err("the arc ends at 315 deg");
     let Reason::Value(Error::RopeArc {
         rope,
@@ -140,7 +140,7 @@ fn a_rope_that_winds_up_stops_where_its_arc_ends() {
     assert!((angle.to_degrees() - 315.0).abs() < 1e-3, "{angle}");
     // Unwound, the arc ends at -45 deg.
     let now = solver.pose().drivers[0];
-    path.curves[0] = Curve::held(now - 7.0, now);
+    path.driver_paths[0] = DriverPath::held(now - 7.0, now);
     let blocked = solver.track(&path).expect_err("the arc ends at -45 deg");
     let is_named =
         matches!(&blocked.reason, Reason::Value(Error::RopeArc { angle, .. }) if *angle < 0.0);

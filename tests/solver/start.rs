@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::common::exact::{EXACT, Exact};
 use crate::common::{Instance, assembled, instance_of, parse, shipped, stems};
 use biela::fmi::{Interface, State, value_reference};
-use biela::kinematics::{Curve, Error, Path, Pose, Progress, Rates, Solver};
+use biela::kinematics::{DriverPath, Error, Path, Pose, Progress, Rates, Solver};
 use biela::mechanism::{DriverId, Jet, Mechanism};
 
 /// Turns whose pose is compared.
@@ -29,7 +29,7 @@ fn start(
     let mut path = Path::new(&mechanism);
     home.set_path(&mut path);
     for (driver, value) in drivers {
-        path.curves[*driver] = Curve::held(*value, home.drivers[*driver]);
+        path.driver_paths[*driver] = DriverPath::held(*value, home.drivers[*driver]);
     }
     for (name, value) in parameters {
         let id = mechanism.parameters.iter().position(|p| p.name == *name);
@@ -47,7 +47,7 @@ fn follow(solver: &mut Solver, drivers: &[usize], by: f64, steps: u32) -> bool {
         solver.pose().set_path(&mut path);
         for &driver in drivers {
             let to = from[driver] + by * f64::from(step) / f64::from(steps);
-            path.curves[driver] = Curve::held(to, solver.pose().drivers[driver]);
+            path.driver_paths[driver] = DriverPath::held(to, solver.pose().drivers[driver]);
         }
         solver.track(&path).is_ok()
     })

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use crate::common::{assembled, mechanisms, parse, straight_to};
 use crate::generated::{Ground, chain};
 use biela::kinematics::{
-    Blocked, Curve, End, Error, Path, RangeSettings, Reason, Solver, StopLimit,
+    Blocked, DriverPath, End, Error, Path, RangeSettings, Reason, Solver, StopLimit,
 };
 use biela::mechanism::{DriverId, Mechanism};
 
@@ -268,7 +268,7 @@ fn a_start_may_be_behind_a_stop_on_the_way() {
         .start(&home, &path)
         .expect("the slider is inside there");
     straight_to(&solver, &mut path, 0.0);
-    path.curves[0] = Curve::held(0.1, home.drivers[0]);
+    path.driver_paths[0] = DriverPath::held(0.1, home.drivers[0]);
     let error = solver.start(&home, &path).expect_err("it is beyond there");
     assert!(matches!(error, Error::BeyondStop { .. }), "{error}");
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_3, TAU};
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, ForceParts, Forces, KnownMotion, Path, Rates, Solver};
+use biela::kinematics::{DriverPath, ForceParts, Forces, KnownMotion, Path, Rates, Solver};
 use biela::mechanism::{Jet, Mechanism, Source};
 
 use crate::generated::{BAR, BAR_ANGLE};
@@ -141,8 +141,9 @@ impl Moving {
 impl Stepper for Moving {
     fn step(&mut self, drivers: &[Jet]) {
         let now = &self.solver.pose().drivers;
-        for ((curve, driver), now) in self.path.curves.iter_mut().zip(drivers).zip(now) {
-            *curve = Curve::Input {
+        for ((driver_path, driver), now) in self.path.driver_paths.iter_mut().zip(drivers).zip(now)
+        {
+            *driver_path = DriverPath::Input {
                 position: driver.value,
                 velocity: 0.0,
                 acceleration: 0.0,

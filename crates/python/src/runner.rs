@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use biela::dynamics::{self, Equilibrium, Event, Given, Motion, Notice, StateSpace, on_cubic};
 use biela::kinematics::{
-    Blocked, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solver, SolverChoices,
+    Blocked, Direction, DriverPath, Error, Output, OutputSource, Path, Pose, Solver, SolverChoices,
 };
 use biela::mechanism::{DriverId, Jet, Order, show_time};
 
@@ -173,13 +173,13 @@ impl Runner {
     pub(crate) fn turns(&mut self, driver: DriverId) -> bool {
         let pose = self.motion.pose();
         self.path.duration = 0.0;
-        for (curve, now) in self.path.curves.iter_mut().zip(&pose.drivers) {
-            if *curve != Curve::Motion {
-                *curve = Curve::held(*now, *now);
+        for (driver_path, now) in self.path.driver_paths.iter_mut().zip(&pose.drivers) {
+            if *driver_path != DriverPath::Motion {
+                *driver_path = DriverPath::held(*now, *now);
             }
         }
         let now = pose.drivers[driver.index()];
-        self.path.curves[driver.index()] = Curve::held(now + TAU, now);
+        self.path.driver_paths[driver.index()] = DriverPath::held(now + TAU, now);
         self.track().is_ok()
     }
 
@@ -203,15 +203,15 @@ impl Runner {
         let pose = self.motion.pose();
         self.path.start = pose.time;
         self.path.duration = self.scenario.times[row] - pose.time;
-        for (index, curve) in self.path.curves.iter_mut().enumerate() {
-            if *curve == Curve::Motion {
+        for (index, driver_path) in self.path.driver_paths.iter_mut().enumerate() {
+            if *driver_path == DriverPath::Motion {
                 continue;
             }
             let now = pose.drivers[index];
             let driver = DriverId(index);
             let samples = self.scenario.samples.iter().find(|s| s.driver == driver);
             let value = samples.map_or(now, |samples| samples.at(row).value);
-            *curve = Curve::held(value, now);
+            *driver_path = DriverPath::held(value, now);
         }
     }
 

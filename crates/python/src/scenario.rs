@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use biela::kinematics::{Pose, SolverChoices};
 use biela::mechanism::{
-    DriverId, DriverSource, Expression, Jet, Mechanism, Motion, Order, ParameterId, Variable,
-    whole_angles,
+    DriverId, DriverSource, Expression, Jet, Mechanism, Order, ParameterId, PrescribedMotion,
+    Variable, whole_angles,
 };
 use biela_tools::cli::{check_parameter, parameter_value, unknown_name};
 use pyo3::prelude::*;
@@ -195,7 +195,7 @@ impl Scenario {
             };
             driven.drivers[driver.index()].source = match drive {
                 Drive::Text(text) => {
-                    DriverSource::Motion(Motion::Expression(expression(own, &text)?))
+                    DriverSource::Motion(PrescribedMotion::Expression(expression(own, &text)?))
                 }
                 Drive::Samples(orders) => {
                     check_samples(&name, &orders, times.len())?;

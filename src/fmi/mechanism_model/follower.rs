@@ -9,8 +9,8 @@ use super::{Interface, MechanismModel};
 use crate::fmi::state::Phase;
 use crate::kinematics::{Direction, Error};
 use crate::mechanism::{
-    DriverId, DriverSource, Dual, Expression, Jet, Mechanism, Motion, Number, Order, ParameterId,
-    Variable,
+    DriverId, DriverSource, Dual, Expression, Jet, Mechanism, Number, Order, ParameterId,
+    PrescribedMotion, Variable,
 };
 
 /// Returns a mechanism whose drivers that follow inputs are given, with their values at the start.
@@ -34,7 +34,7 @@ pub(super) fn with_followers(
     let time = mechanism.simulation.start;
     let mut given = Mechanism::clone(&mechanism);
     for driver in &mut given.drivers {
-        if let (Some(_), DriverSource::Motion(Motion::Expression(motion))) =
+        if let (Some(_), DriverSource::Motion(PrescribedMotion::Expression(motion))) =
             (&driver.follows, &driver.source)
         {
             let start = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);

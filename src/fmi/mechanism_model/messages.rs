@@ -9,7 +9,7 @@ use crate::dynamics::{self, Notice, Stop};
 use crate::fmi::log::{Advice, Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
-use crate::kinematics::{Blocked, Curve, Progress, Reason};
+use crate::kinematics::{Blocked, DriverPath, Progress, Reason};
 use crate::mechanism::{Driver, DriverId, Order, RateSource, rounded, show_time, shown};
 
 /// The host's way out where the budget of a step is spent.
@@ -173,10 +173,10 @@ impl MechanismModel {
 
     /// Observes the angles on the path, and reports once one that falls.
     fn observe_falls(&mut self, log: &Logger) {
-        let drivers = self.mechanism.drivers.iter().zip(&self.path.curves);
+        let drivers = self.mechanism.drivers.iter().zip(&self.path.driver_paths);
         let observed = self.course.inputs.iter().zip(&mut self.course.monitors);
-        for ((driver, curve), (input, monitor)) in drivers.zip(observed) {
-            if let Curve::Input { jump, .. } = *curve
+        for ((driver, driver_path), (input, monitor)) in drivers.zip(observed) {
+            if let DriverPath::Input { jump, .. } = *driver_path
                 && jump.abs() > PI
                 && driver.coordinate.kind.is_angle()
                 && monitor.falls(-jump, input.last_change())

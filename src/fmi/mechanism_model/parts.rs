@@ -9,7 +9,7 @@ use super::{Course, MechanismModel};
 use crate::dynamics::Told;
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::kinematics::{Curve, Path, Progress};
+use crate::kinematics::{DriverPath, Path, Progress};
 
 /// A step that is being taken in parts.
 #[derive(Debug)]
@@ -173,10 +173,10 @@ impl MechanismModel {
         self.path.duration = 0.0;
         (self.path.from).copy_from_slice(&self.course.committed.parameters);
         self.path.to.copy_from_slice(&whole.to);
-        let curves = self.path.curves.iter_mut().zip(&whole.curves);
-        for ((curve, whole), now) in curves.zip(&self.course.committed.drivers) {
+        let driver_paths = self.path.driver_paths.iter_mut().zip(&whole.driver_paths);
+        for ((driver_path, whole), now) in driver_paths.zip(&self.course.committed.drivers) {
             if let Some(at) = whole.input_after(elapsed) {
-                *curve = Curve::held(at.value, *now);
+                *driver_path = DriverPath::held(at.value, *now);
             }
         }
         self.follow(log)?;
@@ -199,14 +199,14 @@ impl MechanismModel {
             };
         }
         self.mechanism.derive_parameters(&mut path.to);
-        let curves = path.curves.iter_mut().zip(&whole.curves);
-        for ((curve, whole_curve), now) in curves.zip(&self.course.committed.drivers) {
-            if let (Curve::Input { jump, .. }, Some(at)) =
+        let driver_paths = path.driver_paths.iter_mut().zip(&whole.driver_paths);
+        for ((driver_path, whole_curve), now) in driver_paths.zip(&self.course.committed.drivers) {
+            if let (DriverPath::Input { jump, .. }, Some(at)) =
                 (*whole_curve, whole_curve.input_after(s0 * whole.duration))
             {
                 // The rest of the jump at the end of the part belongs to the part's polynomial.
                 let position = at.value + (1.0 - s1) * jump;
-                *curve = Curve::Input {
+                *driver_path = DriverPath::Input {
                     position,
                     velocity: at.first(),
                     acceleration: at.second(),

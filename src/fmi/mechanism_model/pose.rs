@@ -8,7 +8,7 @@ use super::{Course, Freshness, MechanismModel, failed, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::{Advice, Logger};
 use crate::fmi::state::{Interface, Phase};
-use crate::kinematics::{Blocked, Budget, Curve};
+use crate::kinematics::{Blocked, Budget, DriverPath};
 use crate::mechanism::{DriverId, DriverSource, Order, RateSource};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
@@ -144,15 +144,15 @@ impl MechanismModel {
         path.duration = h;
         path.from.copy_from_slice(&committed.parameters);
         path.to.copy_from_slice(&self.course.parameters);
-        let drivers = path.curves.iter_mut().zip(&mut self.course.inputs);
+        let drivers = path.driver_paths.iter_mut().zip(&mut self.course.inputs);
         let drivers = drivers.zip(&committed.drivers);
-        for ((curve, input), committed) in drivers {
-            if let Curve::Input {
+        for ((driver_path, input), committed) in drivers {
+            if let DriverPath::Input {
                 position,
                 velocity,
                 acceleration,
                 jump,
-            } = curve
+            } = driver_path
             {
                 let rates = input.path(rule, start, h);
                 *position = input.position();
@@ -326,15 +326,19 @@ impl MechanismModel {
         // Held inputs and parameters reach their values at the end of the step only. Inputs on a
         // curve of their own have right values up to the dead point.
         let jumped = self.path.moves_parameters()
-            || self.path.curves.iter().any(|curve| match *curve {
-                Curve::Input {
-                    velocity,
-                    acceleration,
-                    jump,
-                    ..
-                } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
-                Curve::Motion | Curve::Polynomial(_) => false,
-            });
+            || self
+                .path
+                .driver_paths
+                .iter()
+                .any(|driver_path| match *driver_path {
+                    DriverPath::Input {
+                        velocity,
+                        acceleration,
+                        jump,
+                        ..
+                    } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
+                    DriverPath::Motion | DriverPath::Polynomial(_) => false,
+                });
         self.advance_forces(if jumped { 0.0 } else { blocked.s * h });
         if jumped {
             self.restore_committed();
@@ -409,12 +413,12 @@ impl MechanismModel {
         self.course.committed.clone_from(&start_pose);
         let start = start_pose.time;
         self.set_path(start, self.course.time - start);
-        for curve in &mut self.path.curves {
-            if let Curve::Input {
+        for driver_path in &mut self.path.driver_paths {
+            if let DriverPath::Input {
                 velocity,
                 acceleration,
                 ..
-            } = curve
+            } = driver_path
             {
                 (*velocity, *acceleration) = (0.0, 0.0);
             }

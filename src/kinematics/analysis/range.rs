@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use super::transmission::Passages;
 use crate::kinematics::continuation::{PathTracker, Reason};
 use crate::kinematics::newton::Limits;
-use crate::kinematics::path::{Curve, Path, Rates};
+use crate::kinematics::path::{DriverPath, Path, Rates};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::{Pose, State};
@@ -484,7 +484,7 @@ impl Explorer<'_> {
     fn track(&mut self, value: f64) -> Result<(), Reason> {
         let index = self.driver.index();
         let mut path = held_path(self.start);
-        path.curves[index] = Curve::held(value, self.state.pose.drivers[index]);
+        path.driver_paths[index] = DriverPath::held(value, self.state.pose.drivers[index]);
         let tracked = self.tracker.track(self.compiled, self.state, &path, false);
         tracked.map(drop).map_err(|blocked| blocked.reason)
     }
@@ -642,6 +642,8 @@ fn held_path(pose: &Pose) -> Path {
         duration: 0.0,
         from: pose.parameters.clone(),
         to: pose.parameters.clone(),
-        curves: drivers.map(|&value| Curve::held(value, value)).collect(),
+        driver_paths: drivers
+            .map(|&value| DriverPath::held(value, value))
+            .collect(),
     }
 }

@@ -23,8 +23,8 @@ use crate::kinematics::singular::{Kind, NearPoint, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, Expression, ForceQuantity, Jet, MarkerId, Mechanism, Motion,
-    MotionInForce, Order, ParameterId, Signal,
+    DerivedMeasure, DriverId, Dual, Expression, ForceQuantity, Jet, MarkerId, Mechanism,
+    MotionInForce, Order, ParameterId, PrescribedMotion, Signal,
 };
 
 /// A direction in the space of drivers and parameters.
@@ -188,7 +188,7 @@ impl Sensitivity<'_> {
         });
         let motions = mechanism.drivers.iter().zip(&self.drivers).enumerate();
         let motions = motions.filter_map(|(index, (driver, value))| match driver.motion() {
-            Some(Motion::Expression(expression)) => {
+            Some(PrescribedMotion::Expression(expression)) => {
                 let what = format!("the motion of {}", system.describe_driver(DriverId(index)));
                 Some((*value, expression, what))
             }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::kinematics::assembly::closure::is_small;
 use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::error::Error;
-use crate::kinematics::path::{Curve, Path};
+use crate::kinematics::path::{DriverPath, Path};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::solver::Solver;
 use crate::kinematics::state::State;
@@ -52,7 +52,7 @@ fn find_start(mechanism: &Arc<Mechanism>) -> Option<String> {
         let step = if is_angle { ANGLE } else { length };
         for value in [start + step, start - step] {
             let mut path = home.clone();
-            path.curves[index] = Curve::held(value, start);
+            path.driver_paths[index] = DriverPath::held(value, start);
             if is_within_limits(driver, value)
                 && Solver::assembled(Arc::clone(mechanism), &path).is_ok()
             {

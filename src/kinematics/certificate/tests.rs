@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use crate::kinematics::reference::generated::{BAR, Ground, chain, lift_from_below, scissor_lift};
 use crate::kinematics::reference::{assembled, grown, part};
-use crate::kinematics::{Curve, Path, Pose, Progress, Solver};
+use crate::kinematics::{DriverPath, Path, Pose, Progress, Solver};
 use crate::mechanism::{DriverId, MarkerId, Mechanism, Source};
 
 /// Number of places of a sub-step at which the true motion is compared with the bounds.
@@ -27,13 +27,13 @@ fn piece(path: &Path, mechanism: &Mechanism, [from, to]: [f64; 2]) -> Path {
         }
         mechanism.derive_parameters(values);
     }
-    for curve in &mut piece.curves {
-        if let Curve::Input {
+    for driver_path in &mut piece.driver_paths {
+        if let DriverPath::Input {
             position,
             velocity,
             acceleration,
             jump,
-        } = curve
+        } = driver_path
         {
             // The rest of the jump falls linearly along the part.
             let tau = from * path.duration;
@@ -140,18 +140,18 @@ fn move_drivers(solver: &Solver, by: f64) -> Path {
     path.duration = by.abs();
     path.from.copy_from_slice(&solver.pose().parameters);
     path.to.copy_from_slice(&solver.pose().parameters);
-    for (k, (curve, now)) in path
-        .curves
+    for (k, (driver_path, now)) in path
+        .driver_paths
         .iter_mut()
         .zip(&solver.pose().drivers)
         .enumerate()
     {
-        if let Curve::Input {
+        if let DriverPath::Input {
             position,
             jump,
             acceleration,
             ..
-        } = curve
+        } = driver_path
         {
             *position = now + by / (k + 1) as f64;
             *jump = now - *position;

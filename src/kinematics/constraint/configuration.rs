@@ -7,8 +7,8 @@ use nalgebra::Vector2;
 use crate::kinematics::Error;
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{
-    BodyId, Expression, Interval, Jet, Jet3, MarkerId, Mechanism, Motion, MotionInForce, Number,
-    ParameterId, ProfileInForce,
+    BodyId, Expression, Interval, Jet, Jet3, MarkerId, Mechanism, MotionInForce, Number,
+    ParameterId, PrescribedMotion, ProfileInForce,
 };
 
 /// Returns a vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
@@ -147,7 +147,7 @@ pub struct LawId(pub usize);
 #[derive(Clone, Debug)]
 pub struct CouplingLaw {
     /// The law, which is a function of one argument as a motion is of time.
-    pub law: Motion,
+    pub law: PrescribedMotion,
     /// On numbers with derivatives.
     pub in_force: MotionInForce,
     /// On ranges of the argument.

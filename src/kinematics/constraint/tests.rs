@@ -12,7 +12,8 @@ use crate::kinematics::{
 };
 use crate::mechanism::{
     BodyId, CoordinateEquation, Curve, CurveShape, Dual, Expression, Interval, JointKind, MarkerId,
-    Mechanism, Motion, MotionInForce, Number, PointPath, ProfileInForce, RackSide, Source,
+    Mechanism, MotionInForce, Number, PointPath, PrescribedMotion, ProfileInForce, RackSide,
+    Source,
 };
 
 /// Three bodies and ground with markers in general position, one of them at its body's origin,
@@ -285,7 +286,7 @@ fn coupling(equation: &CoordinateEquation) -> Coupling {
 }
 
 /// Returns the law of the sample's coupling.
-fn law(mechanism: &Mechanism) -> Motion {
+fn law(mechanism: &Mechanism) -> PrescribedMotion {
     let mut laws = mechanism
         .joints
         .iter()

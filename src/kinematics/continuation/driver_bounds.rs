@@ -2,7 +2,7 @@
 
 use crate::kinematics::certificate::{LARGEST_JUMP, PASSED_AT_ONCE, ParameterBounds, StepBounds};
 use crate::kinematics::constraint::moving_configuration::bend;
-use crate::kinematics::path::{Curve, Path, PathDrivers, polynomial};
+use crate::kinematics::path::{DriverPath, Path, PathDrivers, polynomial};
 use crate::kinematics::state::State;
 use crate::kinematics::system::{Equation, System};
 use crate::mechanism::{DriverId, Interval, Jet3, Number, ParameterId};
@@ -38,16 +38,16 @@ pub(super) fn bound_drivers(
         }
     }
     let [start, end] = part;
-    for (index, curve) in path.curves.iter().enumerate() {
+    for (index, driver_path) in path.driver_paths.iter().enumerate() {
         let ends = [state.pose.drivers[index], drivers.values[index]];
         let rounding = f64::EPSILON * (ends[0].abs() + ends[1].abs());
-        let deviation = match curve {
+        let deviation = match driver_path {
             // The second derivative is constant.
-            Curve::Input { .. } => {
+            DriverPath::Input { .. } => {
                 let second = drivers.ahead[index].second();
                 Some(0.125 * (end - start).powi(2) * second.abs())
             }
-            Curve::Polynomial(coefficients) => {
+            DriverPath::Polynomial(coefficients) => {
                 // Taylor's formula from the middle, whose terms add up to a bound.
                 let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
                 let terms = (2..6).rev().fold(0.0, |sum, derivative| {
@@ -56,7 +56,7 @@ pub(super) fn bound_drivers(
                 });
                 Some(0.125 * (end - start).powi(2) * terms)
             }
-            Curve::Motion => {
+            DriverPath::Motion => {
                 let driver = DriverId(index);
                 let motion = Motion {
                     driver,

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use crate::kinematics::continuation::PathTracker;
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::origin::Origin;
-use crate::kinematics::path::{Curve, Path};
+use crate::kinematics::path::{DriverPath, Path};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::redundancy::{drivers_first, jacobian_rows};
 use crate::kinematics::state::State;
@@ -36,10 +36,10 @@ pub(in crate::kinematics) fn indeterminate(
         let mechanism = compiled.system.mechanism();
         let mut path = Path::new(mechanism);
         home.set_path(&mut path);
-        let curves = path.curves.iter_mut().enumerate();
-        for ((index, curve), &now) in curves.zip(&home.drivers) {
+        let driver_paths = path.driver_paths.iter_mut().enumerate();
+        for ((index, driver_path), &now) in driver_paths.zip(&home.drivers) {
             let row = compiled.system.driver_row(DriverId(index));
-            *curve = Curve::held(now + away / row.row_scale(&state.at), now);
+            *driver_path = DriverPath::held(now + away / row.row_scale(&state.at), now);
         }
         if tracker.track(compiled, state, &path, false).is_ok() {
             stressed.push(self_stressed(compiled, state));

@@ -14,7 +14,7 @@ pub use rates::Rates;
 /// Time, parameters and drivers from one communication point to the next, as functions of s from
 /// 0 to 1.
 ///
-/// Time and parameters run straight. A driver runs along its [`Curve`].
+/// Time and parameters run straight. A driver runs along its [`DriverPath`].
 #[derive(Clone, Debug)]
 pub struct Path {
     /// Time at s = 0 \[s\].
@@ -25,13 +25,13 @@ pub struct Path {
     pub from: Vec<f64>,
     /// Parameters at s = 1 \[SI\]. In between, the derived ones follow the others.
     pub to: Vec<f64>,
-    /// One curve per driver.
-    pub curves: Vec<Curve>,
+    /// One per driver.
+    pub driver_paths: Vec<DriverPath>,
 }
 
 /// The course of one driver along a [`Path`]. Lengths in metres, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Curve {
+pub enum DriverPath {
     /// position + velocity τ + acceleration τ²/2 with τ = s · duration, and the rest of a jump at
     /// the start, (1 − s) · jump. Held inputs have neither velocity nor acceleration.
     Input {
@@ -50,7 +50,7 @@ pub enum Curve {
     Polynomial([f64; 6]),
 }
 
-impl Curve {
+impl DriverPath {
     /// Returns the polynomial of degree 5 through values and two derivatives by s at both ends.
     #[must_use]
     pub fn through(from: Jet, to: Jet) -> Self {
@@ -83,7 +83,7 @@ impl Curve {
     }
 
     /// Returns an input's polynomial a time `tau` after s = 0, without the rest of a jump; `None` for
-    /// other curves.
+    /// other paths.
     #[inline]
     #[must_use]
     pub fn input_after(&self, tau: f64) -> Option<Jet> {
@@ -117,18 +117,18 @@ impl Path {
     pub fn new(mechanism: &Mechanism) -> Self {
         let parameters = mechanism.default_parameters();
         let drivers = mechanism.drivers.iter();
-        let curves = drivers.map(|driver| match driver.source {
+        let paths = drivers.map(|driver| match driver.source {
             DriverSource::Input { start } | DriverSource::Free { start, .. } => {
-                Curve::held(start, start)
+                DriverPath::held(start, start)
             }
-            DriverSource::Motion(_) => Curve::Motion,
+            DriverSource::Motion(_) => DriverPath::Motion,
         });
         Self {
             start: mechanism.simulation.start,
             duration: 0.0,
             from: parameters.clone(),
             to: parameters,
-            curves: curves.collect(),
+            driver_paths: paths.collect(),
         }
     }
 
@@ -141,7 +141,7 @@ impl Path {
     /// Returns whether any driver runs along a prescribed motion.
     #[must_use]
     pub fn has_motions(&self) -> bool {
-        self.curves.contains(&Curve::Motion)
+        self.driver_paths.contains(&DriverPath::Motion)
     }
 
     /// Returns the time at s.
@@ -155,7 +155,7 @@ impl Path {
     pub fn drivers_at_end(&self, mechanism: &Mechanism) -> Vec<f64> {
         let mut motions = Motions::new(mechanism);
         motions.set_parameters(|p| Jet::constant(self.to[p.index()]));
-        let mut drivers = vec![Jet::constant(0.0); self.curves.len()];
+        let mut drivers = vec![Jet::constant(0.0); self.driver_paths.len()];
         self.drivers(1.0, &motions, &mut drivers);
         drivers.iter().map(|driver| driver.value).collect()
     }
@@ -186,11 +186,11 @@ impl Path {
     pub(super) fn drivers(&self, s: f64, motions: &Motions, out: &mut [Jet]) {
         let h = self.duration;
         let t = Jet::linear(self.time(s), h);
-        for ((driver, curve), out) in self.curves.iter().enumerate().zip(out) {
+        for ((driver, path), out) in self.driver_paths.iter().enumerate().zip(out) {
             // Written in place: a value that is copied on waits for its parts.
-            match *curve {
-                Curve::Motion => *out = motions.evaluate(DriverId(driver), t),
-                Curve::Input {
+            match *path {
+                DriverPath::Motion => *out = motions.evaluate(DriverId(driver), t),
+                DriverPath::Input {
                     position,
                     velocity,
                     acceleration,
@@ -200,7 +200,7 @@ impl Path {
                     out.value = at.value + (1.0 - s) * jump;
                     out.derivatives = [h * at.first() - jump, h * h * acceleration];
                 }
-                Curve::Polynomial(coefficients) => {
+                DriverPath::Polynomial(coefficients) => {
                     let on = |derivative| polynomial(&coefficients, derivative, s);
                     *out = Jet::new(on(0), [on(1), on(2)]);
                 }

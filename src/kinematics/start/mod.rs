@@ -11,7 +11,7 @@ pub(super) mod initial_pose;
 
 use crate::kinematics::continuation::{Blocked, PathTracker, Progress, most_substeps};
 use crate::kinematics::error::Error;
-use crate::kinematics::path::{Curve, Path};
+use crate::kinematics::path::{DriverPath, Path};
 use crate::kinematics::plan::Crossing;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::{Pose, State};
@@ -167,7 +167,9 @@ impl Journey<'_> {
             duration: 0.0,
             from: pose.parameters.clone(),
             to: self.path.to.clone(),
-            curves: values.map(|(to, from)| Curve::held(*to, *from)).collect(),
+            driver_paths: values
+                .map(|(to, from)| DriverPath::held(*to, *from))
+                .collect(),
         };
         let tracked = self.tracker.track(self.compiled, self.state, &path, false);
         let progress = match &tracked {

@@ -25,8 +25,8 @@ use crate::kinematics::constraint::{
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    Coordinate, DriverId, Expression, Jet, Load, Mechanism, Motion, MotionInForce, MovingProfile,
-    Number, ParameterId, Phase,
+    Coordinate, DriverId, Expression, Jet, Load, Mechanism, MotionInForce, MovingProfile, Number,
+    ParameterId, Phase, PrescribedMotion,
 };
 
 /// The target of c(q).
@@ -481,7 +481,7 @@ impl System {
             let what = || equation.origin.describe(&self.mechanism);
             if !value.is_finite() {
                 let quantity = match driver.motion() {
-                    Some(Motion::Table(_)) => "value: the times of its table must rise",
+                    Some(PrescribedMotion::Table(_)) => "value: the times of its table must rise",
                     _ => "value",
                 };
                 return Err(Error::NoMotion {

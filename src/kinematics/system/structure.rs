@@ -15,7 +15,7 @@ use super::{System, Target};
 use crate::kinematics::constraint;
 use crate::kinematics::constraint::Incidence;
 use crate::mechanism::{
-    Coordinate, DriverId, Expression, MarkerId, Mechanism, Motion, ParameterId,
+    Coordinate, DriverId, Expression, MarkerId, Mechanism, ParameterId, PrescribedMotion,
 };
 
 /// The block lower triangular structure of a system.
@@ -70,7 +70,7 @@ impl Dependencies {
     }
 
     /// Adds the parameters of a prescribed motion.
-    pub fn add_motion(&mut self, mechanism: &Mechanism, motion: &Motion) {
+    pub fn add_motion(&mut self, mechanism: &Mechanism, motion: &PrescribedMotion) {
         for parameter in motion.parameters() {
             self.add_parameter(mechanism, parameter);
         }

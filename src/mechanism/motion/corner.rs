@@ -1,6 +1,6 @@
 //! The search for corners of a motion.
 
-use super::{Motion, MotionInForce};
+use super::{MotionInForce, PrescribedMotion};
 use crate::mechanism::Jet;
 
 /// Ranges that are looked at in one search. Some hundred lead to a corner, or to the place at which pieces
@@ -23,14 +23,13 @@ impl MotionInForce {
     /// tables join smoothly.
     #[must_use]
     pub fn corner(&self, from: f64, to: f64) -> Option<[f64; 2]> {
-        if let Motion::Table(function) = &self.motion {
+        if let PrescribedMotion::Table(function) = &self.motion {
             let has_corners = self.valid && function.first_jump() == Some(1);
             return has_corners
                 .then(|| self.corner_of_table(from, to))
                 .flatten();
         }
-        let has_pieces =
-            matches!(&self.motion, Motion::Expression(expression) if expression.has_pieces());
+        let has_pieces = matches!(&self.motion, PrescribedMotion::Expression(expression) if expression.has_pieces());
         if !has_pieces || from >= to {
             return None;
         }
@@ -82,14 +81,14 @@ impl MotionInForce {
 mod tests {
     use crate::mechanism::expression::{Scope, Variable};
     use crate::mechanism::names::NameTable;
-    use crate::mechanism::{Expression, Jet, Motion, MotionInForce};
+    use crate::mechanism::{Expression, Jet, MotionInForce, PrescribedMotion};
 
     /// Asserts that a motion has its corners from −1 to 10 s where they are, to some roundings.
     fn assert_corners(text: &str, expected: &[f64]) {
         let names = NameTable::new();
         let scope = Scope::new(&names, &[Variable::Time]);
         let expression = Expression::parse(text, scope).expect("an expression");
-        let mut motion = MotionInForce::new(&Motion::Expression(expression), 0);
+        let mut motion = MotionInForce::new(&PrescribedMotion::Expression(expression), 0);
         motion.set_parameters(|_| Jet::constant(0.0));
         let mut from = -1.0;
         for corner in expected {

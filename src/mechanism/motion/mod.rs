@@ -13,14 +13,14 @@ use super::{
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
 #[derive(Clone, Debug)]
-pub enum Motion {
+pub enum PrescribedMotion {
     /// An expression in `t` and the parameters.
     Expression(Expression),
     /// Points of the motion with their interpolation.
     Table(PointFunction),
 }
 
-impl Motion {
+impl PrescribedMotion {
     /// Returns whether it moves at all.
     #[must_use]
     pub fn uses_time(&self) -> bool {
@@ -45,7 +45,7 @@ impl Motion {
 /// On [`Jet`]s it gives value, velocity and acceleration.
 #[derive(Clone, Debug)]
 pub struct MotionInForce<N = Jet> {
-    motion: Motion,
+    motion: PrescribedMotion,
     parameters: Vec<N>,
     /// Through the table's points, for parameters that may move.
     spline: Option<Spline<N>>,
@@ -60,10 +60,12 @@ const ROUGH: f64 = 1e-5;
 impl<N: Number> MotionInForce<N> {
     /// Makes the motion for `parameters` parameters, whose values are set later.
     #[must_use]
-    pub fn new(motion: &Motion, parameters: usize) -> Self {
+    pub fn new(motion: &PrescribedMotion, parameters: usize) -> Self {
         let spline = match motion {
-            Motion::Expression(_) => None,
-            Motion::Table(motion) => Some(Spline::new(motion.table.points.len(), motion.ends)),
+            PrescribedMotion::Expression(_) => None,
+            PrescribedMotion::Table(motion) => {
+                Some(Spline::new(motion.table.points.len(), motion.ends))
+            }
         };
         Self {
             motion: motion.clone(),
@@ -79,7 +81,7 @@ impl<N: Number> MotionInForce<N> {
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
         }
-        if let (Motion::Table(motion), Some(spline)) = (&self.motion, &mut self.spline) {
+        if let (PrescribedMotion::Table(motion), Some(spline)) = (&self.motion, &mut self.spline) {
             let (times, values) = spline.points_mut();
             motion.table.write(&parameter, times, values);
             self.valid = spline.is_valid();
@@ -97,13 +99,13 @@ impl<N: Number> MotionInForce<N> {
     #[must_use]
     pub fn evaluate(&self, t: N) -> N {
         match (&self.motion, &self.spline) {
-            (Motion::Expression(expression), _) => {
+            (PrescribedMotion::Expression(expression), _) => {
                 expression.evaluate(&|p| self.parameters[p.index()], t)
             }
-            (Motion::Table(motion), Some(spline)) if self.valid => {
+            (PrescribedMotion::Table(motion), Some(spline)) if self.valid => {
                 motion.evaluate(&spline.laid(), t)
             }
-            (Motion::Table(_), _) => N::constant(f64::NAN),
+            (PrescribedMotion::Table(_), _) => N::constant(f64::NAN),
         }
     }
 }
@@ -114,7 +116,7 @@ impl MotionInForce {
     #[must_use]
     pub fn curvature(&self, from: f64, to: f64) -> Option<f64> {
         match (&self.motion, &self.spline) {
-            (Motion::Expression(expression), _) => {
+            (PrescribedMotion::Expression(expression), _) => {
                 let parameter = |p: ParameterId| self.parameters[p.index()].value;
                 let t = Interval::new(from, to);
                 let constant = |p: ParameterId| Jet3::constant(parameter(p));
@@ -125,10 +127,10 @@ impl MotionInForce {
                 }
                 Some(expression.enclose(&parameter, t)?.second().magnitude())
             }
-            (Motion::Table(motion), Some(spline)) if self.valid => {
+            (PrescribedMotion::Table(motion), Some(spline)) if self.valid => {
                 Some(motion.curvature(spline, from, to))
             }
-            (Motion::Table(_), _) => None,
+            (PrescribedMotion::Table(_), _) => None,
         }
     }
 
@@ -137,7 +139,7 @@ impl MotionInForce {
     /// such expression, or jumps. Allocates nothing.
     #[must_use]
     pub fn enclose_joined(&self, t: Jet3<Interval>) -> Option<Jet3<Interval>> {
-        let Motion::Expression(expression) = &self.motion else {
+        let PrescribedMotion::Expression(expression) = &self.motion else {
             return None;
         };
         let parameter = |p: ParameterId| Jet3::constant(self.parameters[p.index()].value);
@@ -156,8 +158,8 @@ impl MotionInForce {
         parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
     ) -> Option<Jet3<Interval>> {
         match &self.motion {
-            Motion::Expression(expression) => Some(expression.evaluate(parameter, t)),
-            Motion::Table(_) => None,
+            PrescribedMotion::Expression(expression) => Some(expression.evaluate(parameter, t)),
+            PrescribedMotion::Table(_) => None,
         }
     }
 }
@@ -167,7 +169,8 @@ impl<N: Number> MotionInForce<N> {
     /// begins. Infinite if there is none.
     #[must_use]
     pub fn next_point(&self, t: f64) -> f64 {
-        let (Motion::Table(motion), Some(spline), true) = (&self.motion, &self.spline, self.valid)
+        let (PrescribedMotion::Table(motion), Some(spline), true) =
+            (&self.motion, &self.spline, self.valid)
         else {
             return f64::INFINITY;
         };

@@ -5,7 +5,7 @@
 //! the hull of their bounds holds for the whole curve and its slope, and for their derivatives up
 //! to the first that jumps.
 
-use super::{Law, Motion, MotionInForce};
+use super::{Law, MotionInForce, PrescribedMotion};
 use crate::mechanism::spline::Knots;
 use crate::mechanism::{Interpolation, Interval, Jet3, Number, Spline, Taylor};
 
@@ -19,11 +19,11 @@ impl MotionInForce<Enclosed> {
     #[must_use]
     pub fn enclose(&self, t: Enclosed) -> Option<Enclosed> {
         match (&self.motion, &self.spline) {
-            (Motion::Expression(_), _) => Some(self.evaluate(t)),
-            (Motion::Table(motion), Some(spline)) if spline.laid().rise() => {
+            (PrescribedMotion::Expression(_), _) => Some(self.evaluate(t)),
+            (PrescribedMotion::Table(motion), Some(spline)) if spline.laid().rise() => {
                 Some(motion.evaluate(&spline.laid(), t))
             }
-            (Motion::Table(_), _) => None,
+            (PrescribedMotion::Table(_), _) => None,
         }
     }
 }

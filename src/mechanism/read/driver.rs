@@ -6,7 +6,7 @@ use crate::mechanism::{CoordinateKind, Driver, DriverSource};
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
 use super::kind::{Entry, Flag, Text};
-use super::motion::{PrescribedMotion, ReadMotion};
+use super::motion::{MotionKey, ReadMotion};
 use super::number::{NUMBER, Quantity};
 use super::table::table;
 
@@ -22,7 +22,7 @@ table! {
         /// Start value; makes the driver an FMI input [m or rad].
         start: Quantity = NUMBER,
         /// Prescribed motion: an expression in t and inputs, or a table.
-        motion: ReadMotion = PrescribedMotion,
+        motion: ReadMotion = MotionKey,
         /// Lower limit [m or rad], such as the shortest length of a cylinder.
         min: Quantity = NUMBER,
         /// Upper limit [m or rad].

@@ -6,8 +6,8 @@ use crate::mechanism::motion::not_finite;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::wording::shown;
 use crate::mechanism::{
-    CoordinateKind, Ends, Expression, Interpolation, Jet, Law, Motion, MotionInForce,
-    PointFunction, Span, Variable,
+    CoordinateKind, Ends, Expression, Interpolation, Jet, Law, MotionInForce, PointFunction,
+    PrescribedMotion, Span, Variable,
 };
 
 use super::context::Context;
@@ -55,21 +55,21 @@ pub(super) const ENDS: Word<Ends> = Word::new("kind of ends", code::ILLEGAL_VALU
     ]
 });
 
-/// Motion of a driver as a function of time.
-pub(super) struct PrescribedMotion;
+/// A key `motion`: a function of time.
+pub(super) struct MotionKey;
 
 /// Motion before it is checked for its coordinate.
 pub(super) struct ReadMotion {
-    course: Course,
+    written: WrittenMotion,
     span: Span,
 }
 
-enum Course {
+enum WrittenMotion {
     Expression(Expression),
     Points(PointTable, Interpolation, Ends),
 }
 
-impl<'a> Kind<'a> for PrescribedMotion {
+impl<'a> Kind<'a> for MotionKey {
     type Value = ReadMotion;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<ReadMotion> {
@@ -81,16 +81,16 @@ impl<'a> Kind<'a> for PrescribedMotion {
         ) {
             return None;
         }
-        let course = if item.value.get_ref().is_table() {
+        let written = if item.value.get_ref().is_table() {
             let fields = context.fields(item.span(), item.value, "the motion".to_owned())?;
             let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
             let (points, interpolation, ends) = context.motion_table(keys)?;
-            Course::Points(points, interpolation, ends)
+            WrittenMotion::Points(points, interpolation, ends)
         } else {
-            Course::Expression(context.motion_formula(item.value)?)
+            WrittenMotion::Expression(context.motion_formula(item.value)?)
         };
         Some(ReadMotion {
-            course,
+            written,
             span: item.span(),
         })
     }
@@ -159,28 +159,28 @@ impl<'a> Context<'a> {
         read: ReadMotion,
         kind: Option<CoordinateKind>,
         start_time: f64,
-    ) -> Option<(Motion, Option<Expression>)> {
-        let ReadMotion { course, span } = read;
+    ) -> Option<(PrescribedMotion, Option<Expression>)> {
+        let ReadMotion { written, span } = read;
         let is_distance = kind == Some(CoordinateKind::Distance);
         let is_angle = kind.is_some_and(CoordinateKind::is_angle);
         let mut follows = None;
-        let motion = match course {
-            Course::Expression(expression) if expression.inputs().next().is_some() => {
+        let motion = match written {
+            WrittenMotion::Expression(expression) if expression.inputs().next().is_some() => {
                 let starts = &self.input_starts;
                 let start = |index| Expression::constant(starts.get(index).copied().unwrap_or(0.0));
                 let motion = expression.with_inputs(start)?;
                 follows = Some(expression);
-                Motion::Expression(motion)
+                PrescribedMotion::Expression(motion)
             }
-            Course::Expression(expression) => Motion::Expression(expression),
-            Course::Points(points, interpolation, ends) => {
+            WrittenMotion::Expression(expression) => PrescribedMotion::Expression(expression),
+            WrittenMotion::Points(points, interpolation, ends) => {
                 if is_distance {
                     self.check_ordinates_positive(&points, "a distance")?;
                 }
                 if is_angle {
                     self.warn_of_ordinates(&points);
                 }
-                Motion::Table(PointFunction {
+                PrescribedMotion::Table(PointFunction {
                     table: points.table,
                     interpolation,
                     ends,
@@ -197,7 +197,7 @@ impl<'a> Context<'a> {
             self.not_finite(span, &format!("at t = {}, {what}", shown(start_time)));
             return None;
         }
-        if is_angle && matches!(motion, Motion::Expression(_)) {
+        if is_angle && matches!(motion, PrescribedMotion::Expression(_)) {
             self.warn_of_motion(&span, start);
         }
         if is_distance && start.value <= 0.0 {

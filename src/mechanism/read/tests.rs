@@ -1,8 +1,8 @@
 //! Mechanisms read from right files; `tests/file/diagnostics.rs` has the wrong ones.
 
 use crate::mechanism::{
-    BodyId, CoordinateKind, DisplayUnit, DriverSource, JointKind, MarkerId, Mechanism, Motion,
-    ParameterId, Source, Variable,
+    BodyId, CoordinateKind, DisplayUnit, DriverSource, JointKind, MarkerId, Mechanism, ParameterId,
+    PrescribedMotion, Source, Variable,
 };
 
 fn read(text: &str) -> Mechanism {
@@ -134,7 +134,8 @@ fn a_motion_is_a_function_of_time() {
         "[parameters]\nomega = 2\n[drivers]\n\
          swing = { coordinate = 'angle', markers = ['ground.O', 'rod.O'], motion = 'omega*t' }\n",
     );
-    let DriverSource::Motion(Motion::Expression(motion)) = &mechanism.drivers[0].source else {
+    let DriverSource::Motion(PrescribedMotion::Expression(motion)) = &mechanism.drivers[0].source
+    else {
         panic!("an expression");
     };
     assert!(motion.uses(Variable::Time));

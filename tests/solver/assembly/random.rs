@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 use crate::common::parse;
-use biela::kinematics::{Curve, Error, Path, Solver, Verdict};
+use biela::kinematics::{DriverPath, Error, Path, Solver, Verdict};
 
 /// A stream of numbers from 0 to 1, always the same (SplitMix64).
 struct Stream(u64);
@@ -161,7 +161,7 @@ fn random_four_bars(count: usize) {
         }
         path.to[..4].copy_from_slice(&links);
         path.to[4..].copy_from_slice(&estimate);
-        path.curves[0] = Curve::Input {
+        path.driver_paths[0] = DriverPath::Input {
             position: theta,
             velocity: 0.0,
             acceleration: 0.0,

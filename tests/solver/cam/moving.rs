@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use biela::kinematics::{Blocked, Curve, Path, Progress, Solver};
+use biela::kinematics::{Blocked, DriverPath, Path, Progress, Solver};
 
 use crate::common::{assembled, parse};
 
@@ -38,10 +38,10 @@ fn go_to(solver: &mut Solver, to: &[f64], u: f64, steps: u32) -> (f64, Progress,
         for (k, to) in to.iter().enumerate() {
             path.to[k] = start.parameters[k] + s * (to - start.parameters[k]);
         }
-        for (k, curve) in path.curves.iter_mut().enumerate() {
-            if let Curve::Input { .. } = curve {
+        for (k, driver_path) in path.driver_paths.iter_mut().enumerate() {
+            if let DriverPath::Input { .. } = driver_path {
                 let from = start.drivers[k];
-                *curve = Curve::held(from + s * (u - from), solver.pose().drivers[k]);
+                *driver_path = DriverPath::held(from + s * (u - from), solver.pose().drivers[k]);
             }
         }
         let tracked = solver.track(&path);

@@ -117,7 +117,7 @@ impl Run {
     fn set_value(&mut self, value: f64, rates: [f64; 2]) -> &mut Self {
         self.solver.pose().set_path(&mut self.path);
         let now = self.solver.pose().drivers[0];
-        self.path.curves[0] = biela::kinematics::Curve::held(value, now);
+        self.path.driver_paths[0] = biela::kinematics::DriverPath::held(value, now);
         self.solver.track(&self.path).expect("it moves there");
         self.solution.driver_rates[0] = Jet::new(value, rates);
         self

@@ -1,6 +1,6 @@
 //! Friction of what is driven: it adds to the effort of the driver.
 
-use biela::kinematics::{Curve, Direction, ForceQuantity, OutputSource, Path, Solution};
+use biela::kinematics::{Direction, DriverPath, ForceQuantity, OutputSource, Path, Solution};
 use biela::mechanism::{DriverId, Jet};
 
 use crate::common::{assembled, parse};
@@ -119,7 +119,10 @@ hold = {{ coordinate = "distance", markers = ["a.C", "b.C"], start = 0.35 }}
             let (mut solver, _) = assembled(mechanism);
             let mut path = Path::new(mechanism);
             let hold = solver.pose().drivers[1];
-            path.curves = vec![Curve::held(turn.value, 0.3), Curve::held(hold, hold)];
+            path.driver_paths = vec![
+                DriverPath::held(turn.value, 0.3),
+                DriverPath::held(hold, hold),
+            ];
             solver.track(&path).expect("the arms turn");
             let mut solution = Solution::new(&solver);
             solution.seek_forces(&solver);

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, ForceParts, ForceQuantity, KnownMotion, Origin, Path, Solver};
+use biela::kinematics::{DriverPath, ForceParts, ForceQuantity, KnownMotion, Origin, Path, Solver};
 use biela::mechanism::{
     CoordinateKind, DriverId, DriverSource, Expression, ForceLaw, Jet, JointKind, Load, Marker,
     MarkerId, Mechanism,
@@ -99,7 +99,7 @@ fn solve(mechanism: Mechanism, drawn: Drawn, scale: Scale, inputs: &[f64]) -> Op
         let most = if kind.is_angle() { 0.2 } else { 0.004 };
         let factor = scale.coordinate(kind);
         let now = solver.pose().drivers[index];
-        path.curves[index] = Curve::held(now + most * factor * drawn.shift, now);
+        path.driver_paths[index] = DriverPath::held(now + most * factor * drawn.shift, now);
         let unlike = 0.5 + spread(index);
         driver_rates.push(Jet::new(
             0.0,

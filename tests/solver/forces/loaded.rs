@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, ForceParts, Forces, KnownMotion, Path, Rates, Solver};
+use biela::kinematics::{DriverPath, ForceParts, Forces, KnownMotion, Path, Rates, Solver};
 use biela::mechanism::{
     Coordinate, CoordinateKind, DriverSource, Expression, Force, ForceLaw, Jet, Load, MarkerId,
     Mechanism, Spring,
@@ -102,9 +102,9 @@ impl Loaded {
         solver.assemble(&start).expect("it assembles");
         let mut path = start;
         path.duration = 0.317;
-        for curve in &mut path.curves {
-            if let Curve::Input { position, .. } = *curve {
-                *curve = Curve::held(position + 0.003, position);
+        for driver_path in &mut path.driver_paths {
+            if let DriverPath::Input { position, .. } = *driver_path {
+                *driver_path = DriverPath::held(position + 0.003, position);
             }
         }
         solver.track(&path).expect("the way is free");

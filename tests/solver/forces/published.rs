@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, ForceParts, ForceQuantity, KnownMotion, Path, Rates, Solver};
+use biela::kinematics::{DriverPath, ForceParts, ForceQuantity, KnownMotion, Path, Rates, Solver};
 use biela::mechanism::{DriverId, Jet, Mechanism, Source};
 use nalgebra::{Matrix2, Vector2};
 
@@ -95,8 +95,8 @@ fn a_car_axis_has_the_published_multipliers_at_the_end() {
     let mut solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
     let mut path = Path::new(solver.mechanism());
     path.start = 3.0;
-    for (curve, height) in path.curves[1..].iter_mut().zip([YL, YR]) {
-        *curve = Curve::held(height, height);
+    for (driver_path, height) in path.driver_paths[1..].iter_mut().zip([YL, YR]) {
+        *driver_path = DriverPath::held(height, height);
     }
     solver.assemble(&path).expect("it assembles");
     let road = solver.motion(DriverId(0), 3.0);

@@ -444,8 +444,8 @@ fn the_dead_point_that_stops_the_motion_is_named_not_another_one_behind_it() {
     let (mut solver, mut path) = assembled(&mechanism);
     let targets = [0.20534713219285566, 0.1311047561749372, 0.3565392472904871];
     let start = solver.pose().drivers.clone();
-    for (curve, (from, to)) in path.curves.iter_mut().zip(start.iter().zip(targets)) {
-        *curve = biela::kinematics::Curve::Input {
+    for (driver_path, (from, to)) in path.driver_paths.iter_mut().zip(start.iter().zip(targets)) {
+        *driver_path = biela::kinematics::DriverPath::Input {
             position: to,
             velocity: 0.0,
             acceleration: 0.0,

@@ -1,6 +1,6 @@
 //! Parameters that move over corners of the expressions in which they are.
 
-use biela::kinematics::{Curve, Path, Progress, Reason, Solver};
+use biela::kinematics::{DriverPath, Path, Progress, Reason, Solver};
 
 use crate::common::{assembled, parse};
 use crate::stepping::difference;
@@ -64,7 +64,7 @@ fn go_to(solver: &mut Solver, [n, u]: [f64; 2], steps: u32) -> Result<Progress, 
         path.to[0] = from + s * (n - from);
         mechanism.derive_parameters(&mut path.to);
         let now = solver.pose().drivers[0];
-        path.curves[0] = Curve::held(at + s * (u - at), now);
+        path.driver_paths[0] = DriverPath::held(at + s * (u - at), now);
         let progress = solver.track(&path).map_err(|blocked| blocked.reason)?;
         most.substeps = most.substeps.max(progress.substeps);
         most.checked += progress.checked;

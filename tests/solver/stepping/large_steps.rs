@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use biela::kinematics::{Curve, Reason};
+use biela::kinematics::{DriverPath, Reason};
 use biela::mechanism::Jet;
 use proptest::prelude::*;
 
@@ -172,7 +172,7 @@ fn a_turn_from_rest_is_followed_all_the_way() {
     let (mut solver, mut path) = assembled(&shipped("parallelogram"));
     let start = solver.pose().drivers[0];
     path.duration = 1.0;
-    path.curves[0] = Curve::Input {
+    path.driver_paths[0] = DriverPath::Input {
         position: start,
         velocity: 0.0,
         acceleration: 2.0 * 5.3,

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
 
-use biela::kinematics::{Curve, Reason};
+use biela::kinematics::{DriverPath, Reason};
 
 use crate::common::{assembled, parse, shipped, straight_to};
 use crate::generated::{Ground, chain, lift_from_below, lift_from_below_pose, scissor_lift};
@@ -253,9 +253,9 @@ fn a_large_mechanism_beside_a_small_one_costs_it_no_sub_steps() {
     let [alone, beside @ ..] = [alone, beside(0), beside(1), beside(2)].map(|pendulum| {
         let (mut solver, mut path) = assembled(&file(pendulum));
         let rcond = solver.rcond();
-        for (driver, curve) in path.curves.iter_mut().enumerate() {
+        for (driver, driver_path) in path.driver_paths.iter_mut().enumerate() {
             let here = solver.pose().drivers[driver];
-            *curve = Curve::Input {
+            *driver_path = DriverPath::Input {
                 position: 1.01 * here,
                 velocity: 0.0,
                 acceleration: 0.0,

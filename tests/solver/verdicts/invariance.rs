@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, Path, Solver};
+use biela::kinematics::{DriverPath, Path, Solver};
 use biela::mechanism::{JointKind, Mechanism, Source};
 
 use crate::common::mechanisms::{four_bar, slider_crank};
@@ -49,7 +49,7 @@ fn run(mechanism: &Arc<Mechanism>) -> Option<Run> {
     for step in 1..=STEPS {
         let to = start + way * step as f64 / STEPS as f64;
         hold(&solver, &mut path);
-        path.curves[driver] = Curve::Input {
+        path.driver_paths[driver] = DriverPath::Input {
             position: to,
             velocity: 0.0,
             acceleration: 0.0,
@@ -71,9 +71,9 @@ fn hold(solver: &Solver, path: &mut Path) {
     path.start = solver.pose().time;
     path.from.clone_from(&solver.pose().parameters);
     path.to.clone_from(&solver.pose().parameters);
-    for (curve, value) in path.curves.iter_mut().zip(&solver.pose().drivers) {
-        if let Curve::Input { .. } = curve {
-            *curve = Curve::Input {
+    for (driver_path, value) in path.driver_paths.iter_mut().zip(&solver.pose().drivers) {
+        if let DriverPath::Input { .. } = driver_path {
+            *driver_path = DriverPath::Input {
                 position: *value,
                 velocity: 0.0,
                 acceleration: 0.0,

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, End, Path, Pose, RangeSettings, Rates, Sample, Solver};
+use biela::kinematics::{DriverPath, End, Path, Pose, RangeSettings, Rates, Sample, Solver};
 use biela::mechanism::{DriverId, Mechanism, Source};
 
 use super::{Finding, Kind, View, case};
@@ -213,11 +213,11 @@ impl<'a> Scan<'a> {
         let pose = self.solver.pose();
         let path = &mut self.path;
         pose.set_path(path);
-        for (curve, here) in path.curves.iter_mut().zip(&pose.drivers) {
-            *curve = Curve::held(*here, *here);
+        for (driver_path, here) in path.driver_paths.iter_mut().zip(&pose.drivers) {
+            *driver_path = DriverPath::held(*here, *here);
         }
         let index = self.driver.index();
-        path.curves[index] = Curve::held(value, pose.drivers[index]);
+        path.driver_paths[index] = DriverPath::held(value, pose.drivers[index]);
         self.solver.track(path).is_ok()
     }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, Error, Path, Pose, Solver};
+use biela::kinematics::{DriverPath, Error, Path, Pose, Solver};
 use biela::mechanism::{Mechanism, Source};
 
 use super::{Case, SAME, TINY, distance, is_given_up};
@@ -203,8 +203,9 @@ impl Way {
         let mut path = Path::new(self.solver.mechanism());
         path.from.copy_from_slice(from[0]);
         path.to.copy_from_slice(to[0]);
-        for (curve, (from, to)) in path.curves.iter_mut().zip(from[1].iter().zip(to[1])) {
-            *curve = Curve::held(*to, *from);
+        for (driver_path, (from, to)) in path.driver_paths.iter_mut().zip(from[1].iter().zip(to[1]))
+        {
+            *driver_path = DriverPath::held(*to, *from);
         }
         path
     }

@@ -30,7 +30,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use biela::kinematics::{Blocked, Curve, Error, Path, Progress, Reason, Solver};
+use biela::kinematics::{Blocked, DriverPath, Error, Path, Progress, Reason, Solver};
 use biela::mechanism::{Mechanism, Source};
 
 use crate::mutation::Chance;
@@ -391,14 +391,14 @@ impl Jump {
         for (k, value) in path.to.iter_mut().enumerate() {
             *value = between(self.from[0][k], self.to[0][k]);
         }
-        for (k, curve) in path.curves.iter_mut().enumerate() {
+        for (k, driver_path) in path.driver_paths.iter_mut().enumerate() {
             let (here, there) = (pose.drivers[k], between(self.from[1][k], self.to[1][k]));
             let (position, jump, acceleration) = match self.law {
                 Law::Jump => (there, here - there, 0.0),
                 Law::FromRest => (here, 0.0, 2.0 * (there - here)),
                 Law::Prescribed => continue,
             };
-            *curve = Curve::Input {
+            *driver_path = DriverPath::Input {
                 position,
                 velocity: 0.0,
                 acceleration,

@@ -4,7 +4,7 @@ use super::given::conditions::Scenario;
 use super::given::signals::Signals;
 use super::told::message::Message;
 use biela::dynamics::{self, Motion, Notice};
-use biela::kinematics::{Curve, Error, Path, Solver};
+use biela::kinematics::{DriverPath, Error, Path, Solver};
 use biela::mechanism::{DriverId, show_time};
 
 /// A mechanism in motion, the signals that move it, and what is told of it.
@@ -146,12 +146,12 @@ impl SignalledMotion {
     fn aim(&mut self) -> bool {
         let pose = self.motion.pose();
         let mut is_off = false;
-        let curves = self.path.curves.iter_mut().zip(&pose.drivers);
-        for (driver, (curve, value)) in curves.enumerate() {
+        let driver_paths = self.path.driver_paths.iter_mut().zip(&pose.drivers);
+        for (driver, (driver_path, value)) in driver_paths.enumerate() {
             let Some(signal) = self.signals.line(DriverId(driver), pose.time) else {
                 continue;
             };
-            *curve = Curve::Input {
+            *driver_path = DriverPath::Input {
                 position: signal.value,
                 velocity: signal.first(),
                 acceleration: 0.0,

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, End, Path, RangeSettings, Solver};
+use biela::kinematics::{DriverPath, End, Path, RangeSettings, Solver};
 use biela::mechanism::{DriverId, Mechanism};
 
 /// Poses along a whole motion: curves look smooth.
@@ -198,7 +198,7 @@ fn turn(
     let step = by / steps;
     (0..steps as usize).all(|_| {
         let value = solver.pose().drivers[driver];
-        path.curves[driver] = Curve::held(value + step, value);
+        path.driver_paths[driver] = DriverPath::held(value + step, value);
         advance(solver, path, poses)
     })
 }

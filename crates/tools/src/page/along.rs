@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use super::session::Session;
 use biela::dynamics::Event;
-use biela::kinematics::Curve;
+use biela::kinematics::DriverPath;
 use biela::mechanism::DriverId;
 
 /// The variable along which a motion is shown.
@@ -115,8 +115,8 @@ impl Session {
             match over {
                 Over::Time => path.duration = x - path.start,
                 Over::Driver(driver) => {
-                    if let Curve::Input { position, .. } = path.curves[driver.index()] {
-                        path.curves[driver.index()] = Curve::held(x, position);
+                    if let DriverPath::Input { position, .. } = path.driver_paths[driver.index()] {
+                        path.driver_paths[driver.index()] = DriverPath::held(x, position);
                     }
                 }
             }

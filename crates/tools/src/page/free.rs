@@ -4,7 +4,7 @@ use super::outcome::{Obstacle, Outcome};
 use super::session::Session;
 use super::spring::{Spring, mobility};
 use biela::dynamics::{Error, Given, GivenByPath, Motion, Notice, Stop};
-use biela::kinematics::{Budget, Curve, Path, Pose};
+use biela::kinematics::{Budget, DriverPath, Path, Pose};
 use biela::mechanism::{BodyId, DriverId, Jet, Signal, show_time};
 
 impl Session {
@@ -136,12 +136,12 @@ impl Session {
     fn set_path_on(&mut self) {
         self.path_here();
         let rates = &self.motion.solution.driver_rates;
-        for (curve, rates) in self.path.curves.iter_mut().zip(rates) {
-            if let Curve::Input {
+        for (driver_path, rates) in self.path.driver_paths.iter_mut().zip(rates) {
+            if let DriverPath::Input {
                 velocity,
                 acceleration,
                 ..
-            } = curve
+            } = driver_path
             {
                 [*velocity, *acceleration] = rates.derivatives;
             }

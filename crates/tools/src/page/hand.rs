@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::outcome::{Obstacle, Outcome};
 use super::session::Session;
-use biela::kinematics::{Curve, Rates};
-use biela::mechanism::{BodyId, DriverId, Jet, Motion};
+use biela::kinematics::{DriverPath, Rates};
+use biela::mechanism::{BodyId, DriverId, Jet, PrescribedMotion};
 
 /// Most steps towards the hand per call.
 const MOST_STEPS: usize = 60;
@@ -242,9 +242,9 @@ impl Session {
                 }
                 Handle::Time => path.duration = *step,
                 Handle::Driver(driver) => {
-                    let curve = &mut path.curves[driver.index()];
-                    if let Curve::Input { position, .. } = *curve {
-                        *curve = Curve::held(position + step, position);
+                    let driver_path = &mut path.driver_paths[driver.index()];
+                    if let DriverPath::Input { position, .. } = *driver_path {
+                        *driver_path = DriverPath::held(position + step, position);
                     }
                 }
             }
@@ -281,7 +281,7 @@ impl Session {
             let jets: Vec<Jet> = (0..self.mechanism().drivers.len())
                 .map(|index| match handle {
                     Handle::Time => match self.mechanism().drivers[index].motion() {
-                        Some(Motion::Expression(_) | Motion::Table(_)) => {
+                        Some(PrescribedMotion::Expression(_) | PrescribedMotion::Table(_)) => {
                             self.motion.solver.motion(DriverId(index), self.pose().time)
                         }
                         None => Jet::constant(0.0),

@@ -14,7 +14,9 @@ use super::values::shown_in;
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
 use biela::dynamics::{Event, Motion, MotionState, Overlap};
-use biela::kinematics::{Curve, ForceQuantity, Output, OutputSource, Path, Pose, Reason, Solver};
+use biela::kinematics::{
+    DriverPath, ForceQuantity, Output, OutputSource, Path, Pose, Reason, Solver,
+};
 use biela::mechanism::{
     BodyId, DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source,
     Unit,
@@ -147,13 +149,15 @@ impl Session {
     pub fn drive(&mut self, driver: DriverId, value: f64) -> Outcome {
         self.take();
         let path = self.path_here();
-        let Some(Curve::Input { position, .. }) = path.curves.get(driver.index()).copied() else {
+        let Some(DriverPath::Input { position, .. }) =
+            path.driver_paths.get(driver.index()).copied()
+        else {
             return Outcome::Refused(Obstacle::new("no driver that is an input"));
         };
         if !value.is_finite() {
             return Outcome::Refused(Obstacle::new("the value is no finite number"));
         }
-        path.curves[driver.index()] = Curve::held(value, position);
+        path.driver_paths[driver.index()] = DriverPath::held(value, position);
         let outcome = self.follow(|id| id == driver);
         self.release_moved(self.mechanism.drivers[driver.index()].is_free());
         self.tell_overlaps(outcome)
@@ -311,9 +315,9 @@ impl Session {
         self.motion.solver.restore(&self.start.pose);
         let path = self.path_here();
         path.to.clone_from(&here.parameters);
-        for (curve, value) in path.curves.iter_mut().zip(&here.drivers) {
-            if let Curve::Input { position, .. } = *curve {
-                *curve = Curve::held(*value, position);
+        for (driver_path, value) in path.driver_paths.iter_mut().zip(&here.drivers) {
+            if let DriverPath::Input { position, .. } = *driver_path {
+                *driver_path = DriverPath::held(*value, position);
             }
         }
         if let Outcome::Stopped(obstacle) = self.follow(|_| true) {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use biela::dynamics::{FreeMotion, Given};
-use biela::kinematics::{Curve, Solution, Solver};
+use biela::kinematics::{DriverPath, Solution, Solver};
 use biela::mechanism::{DriverId, Jet, Mechanism, Signal};
 use biela_tools::exchange::Format;
 
@@ -360,5 +360,5 @@ fn sweeps_moved_by_hand_are_inputs_within_their_limits() {
         "{text}"
     );
     let (_, path) = assembled(&parse(&text));
-    assert!(matches!(path.curves[0], Curve::Input { .. }));
+    assert!(matches!(path.driver_paths[0], DriverPath::Input { .. }));
 }

@@ -6,7 +6,7 @@ use crate::common::mechanisms::crank;
 use crate::common::{assembled, parse, shipped, stems, straight_to};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use biela::kinematics::{Curve, ForceParts, ForceQuantity, KnownMotion, Rates};
+use biela::kinematics::{DriverPath, ForceParts, ForceQuantity, KnownMotion, Rates};
 use biela::mechanism::{DriverId, Jet, Mechanism};
 use biela_tools::drawing::animation::{
     Animation, Clock, Moment, Reading, moving_gif, moving_svg, page,
@@ -64,7 +64,7 @@ fn swing(mechanism: &Arc<Mechanism>, count: usize) -> Vec<(Vec<f64>, [Vec<f64>; 
         let t = 0.1 * k as f64;
         Jet::new(home[0] + size * t.sin(), [size * t.cos(), -size * t.sin()])
     };
-    let moved = matches!(path.curves[0], Curve::Input { .. });
+    let moved = matches!(path.driver_paths[0], DriverPath::Input { .. });
     let step = |k| {
         if moved {
             straight_to(&solver, &mut path, swing(k).value);
@@ -520,7 +520,7 @@ fn a_gif_shows_the_motion_in_its_time() {
     let scene = Scene::new(&mut solver, true);
     let moments = (0..=20).map(|k| {
         let angle = std::f64::consts::TAU * f64::from(k) / 20.0;
-        path.curves[0] = Curve::held(angle, solver.pose().drivers[0]);
+        path.driver_paths[0] = DriverPath::held(angle, solver.pose().drivers[0]);
         solver.track(&path).expect("it turns");
         Moment {
             q: solver.pose().q.clone(),

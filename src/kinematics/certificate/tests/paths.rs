@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::shipped;
 use crate::kinematics::reference::{Part, assembled, grown, part};
-use crate::kinematics::{Curve, Path, Solver};
+use crate::kinematics::{DriverPath, Path, Solver};
 use crate::mechanism::{Mechanism, Source};
 
 /// Length of a tiny step, in radians or characteristic lengths.
@@ -37,8 +37,8 @@ fn set_targets(solver: &Solver, path: &mut Path, targets: &[f64]) {
     path.start = solver.pose().time;
     path.duration = 0.0;
     let drivers = targets.iter().zip(&solver.pose().drivers);
-    for (curve, (target, now)) in path.curves.iter_mut().zip(drivers) {
-        *curve = Curve::Input {
+    for (driver_path, (target, now)) in path.driver_paths.iter_mut().zip(drivers) {
+        *driver_path = DriverPath::Input {
             position: *target,
             velocity: 0.0,
             acceleration: 0.0,

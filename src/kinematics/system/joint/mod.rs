@@ -24,8 +24,8 @@ use crate::kinematics::constraint::configuration::{
 };
 use crate::kinematics::constraint::{Axis, Coincidence, Constraint, JointUnknown, of_coordinate};
 use crate::mechanism::{
-    CoordinateKind, Expression, Joint, JointKind, Mechanism, Motion, MotionInForce, ParameterId,
-    Phase, Profile, ProfileInForce,
+    CoordinateKind, Expression, Joint, JointKind, Mechanism, MotionInForce, ParameterId, Phase,
+    PrescribedMotion, Profile, ProfileInForce,
 };
 
 /// A relation, and the value at which it is held.
@@ -86,7 +86,7 @@ impl JointParts {
     }
 
     /// Adds the law of a coupling.
-    fn law(&mut self, law: &Motion, mechanism: &Mechanism, what: String) -> LawId {
+    fn law(&mut self, law: &PrescribedMotion, mechanism: &Mechanism, what: String) -> LawId {
         self.parameters.extend(law.parameters());
         let parameters = mechanism.parameters.len();
         self.laws.push(CouplingLaw {

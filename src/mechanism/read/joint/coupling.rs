@@ -13,7 +13,7 @@ use crate::mechanism::read::points::PointKeys;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
     Coordinate, CoordinateEquation, CoordinateKind, Dimension, Expression, JointKind, MOST_BODIES,
-    MOST_COUPLED, Motion, Phase, PointFunction, Variable,
+    MOST_COUPLED, Phase, PointFunction, PrescribedMotion, Variable,
 };
 
 use super::phase::{PhaseOf, phase};
@@ -66,7 +66,7 @@ struct LawOfOneArgument;
 /// Law as it is read.
 pub(super) enum Law {
     Expression(Expression, Option<Dimension>),
-    Table(Motion),
+    Table(PrescribedMotion),
 }
 
 impl<'a> Kind<'a> for LawOfOneArgument {
@@ -80,7 +80,7 @@ impl<'a> Kind<'a> for LawOfOneArgument {
         let fields = context.fields(item.span(), item.value, "the law".to_owned())?;
         let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
         let (points, interpolation, ends) = context.motion_table(keys)?;
-        Some(Law::Table(Motion::Table(PointFunction {
+        Some(Law::Table(PrescribedMotion::Table(PointFunction {
             table: points.table,
             interpolation,
             ends,

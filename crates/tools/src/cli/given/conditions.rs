@@ -12,8 +12,8 @@ use crate::cli::told::message::Message;
 use biela::fmi;
 use biela::kinematics::{self, Solver};
 use biela::mechanism::{
-    Dimension, Driver, DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Order,
-    Parameter, ParameterId, Unit, Variable, help, is_plain, large_angle, large_length,
+    Dimension, Driver, DriverId, DriverSource, ExpressionError, Jet, Mechanism, Order, Parameter,
+    ParameterId, PrescribedMotion, Unit, Variable, help, is_plain, large_angle, large_length,
     large_velocity, not_finite, quoted, shown,
 };
 
@@ -85,7 +85,7 @@ impl Conditions {
             }
             let motion = motion(mechanism, text, &parameters, start)?;
             if mechanism.drivers[index].coordinate.kind.is_angle()
-                && let Motion::Expression(expression) = &motion
+                && let PrescribedMotion::Expression(expression) = &motion
             {
                 let at_start = expression.evaluate(
                     &|p: ParameterId| Jet::constant(parameters[p.index()]),
@@ -257,7 +257,7 @@ fn motion(
     text: &str,
     parameters: &[f64],
     start: f64,
-) -> Result<Motion, Error> {
+) -> Result<PrescribedMotion, Error> {
     let motion = mechanism
         .parse_expression(text, Some(Variable::Time))
         .map_err(|error| DRIVE.refuse(text, &error))?;
@@ -274,7 +274,7 @@ fn motion(
         };
         return Err(DRIVE.refuse(text, &error));
     }
-    Ok(Motion::Expression(motion))
+    Ok(PrescribedMotion::Expression(motion))
 }
 
 impl Scenario {

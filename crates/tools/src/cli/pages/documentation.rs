@@ -20,7 +20,8 @@ use crate::drawing::{Scene, Sheet, png};
 use biela::fmi::{Causality, Document, Kind, Quantity, Variability, Variable, Version, variables};
 use biela::kinematics::{End, Range, RangeSettings, Solver};
 use biela::mechanism::{
-    DriverId, DriverSource, Mechanism, Motion as Prescribed, Source, Unit, Variable as Of, rounded,
+    DriverId, DriverSource, Mechanism, PrescribedMotion as Prescribed, Source, Unit,
+    Variable as Of, rounded,
 };
 
 const MAIN: &str = include_str!("documentation.html");

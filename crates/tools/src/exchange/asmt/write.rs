@@ -9,7 +9,7 @@ use crate::exchange::note::Note;
 use biela::kinematics::Solver;
 use biela::mechanism::{
     BodyId, Coordinate, CoordinateKind, Driver, DriverId, Expression, Joint, JointKind, MarkerId,
-    Mechanism, Motion, RackSide,
+    Mechanism, PrescribedMotion, RackSide,
 };
 
 /// A mechanism at a pose as an assembly, in metres.
@@ -300,8 +300,8 @@ impl Writer<'_> {
                 });
                 Some(format!("{now}"))
             }
-            Some(Motion::Table(_)) => None,
-            Some(Motion::Expression(expression)) => {
+            Some(PrescribedMotion::Table(_)) => None,
+            Some(PrescribedMotion::Expression(expression)) => {
                 let parameters = &self.solver.pose().parameters;
                 let parameter = |id: biela::mechanism::ParameterId| parameters[id.index()];
                 expression.infix(&parameter, "time", &function)

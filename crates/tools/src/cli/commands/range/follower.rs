@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, Error, Path, Pose, Range, Sample, Solution, Solver};
+use biela::kinematics::{DriverPath, Error, Path, Pose, Range, Sample, Solution, Solver};
 use biela::mechanism::{DriverId, Jet, Mechanism, shown};
 
 /// Reciprocal condition of a limit that is located to rounding. A pose in front of one, where the
@@ -36,8 +36,8 @@ impl<'a> Follower<'a> {
         solution.driver_rates[driver.index()] = Jet::linear(0.0, speed);
         let mut path = Path::new(&mechanism);
         home.set_path(&mut path);
-        let values = path.curves.iter_mut().zip(&home.drivers);
-        values.for_each(|(curve, value)| *curve = Curve::held(*value, *value));
+        let values = path.driver_paths.iter_mut().zip(&home.drivers);
+        values.for_each(|(driver_path, value)| *driver_path = DriverPath::held(*value, *value));
         Self {
             solver,
             mechanism,
@@ -83,7 +83,7 @@ impl<'a> Follower<'a> {
         if distance(nearest) < distance(self.solver.pose()) {
             self.solver.restore(nearest);
         }
-        self.path.curves[index] = Curve::held(value, self.solver.pose().drivers[index]);
+        self.path.driver_paths[index] = DriverPath::held(value, self.solver.pose().drivers[index]);
         if self.solver.track(&self.path).is_err() {
             self.solver.restore(nearest);
             return None;
