@@ -19,7 +19,7 @@ const STILL_RATE: f64 = 1e-12;
 
 /// A force that bounds hold, at the present step of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
+enum ActiveBound {
     Between,
     Lower,
     Upper,
@@ -42,12 +42,12 @@ pub(super) fn solve(
 ) -> Option<DVector<f64>> {
     let count = b.len();
     let mut x = DVector::zeros(count);
-    let mut places: Vec<Place> = bounds
+    let mut places: Vec<ActiveBound> = bounds
         .iter()
         .map(|[lower, upper]| match (*lower < 0.0, *upper > 0.0) {
-            (true, true) => Place::Between,
-            (false, _) => Place::Lower,
-            (true, false) => Place::Upper,
+            (true, true) => ActiveBound::Between,
+            (false, _) => ActiveBound::Lower,
+            (true, false) => ActiveBound::Upper,
         })
         .collect();
     // Far more steps than any set of forces takes.
@@ -64,9 +64,9 @@ pub(super) fn solve(
         let violation = |k: usize| {
             let rate = gradient[k] + b[k];
             match places[k] {
-                Place::Between => 0.0,
-                Place::Lower if bounds[k][1] > bounds[k][0] => -rate,
-                Place::Upper if bounds[k][1] > bounds[k][0] => rate,
+                ActiveBound::Between => 0.0,
+                ActiveBound::Lower if bounds[k][1] > bounds[k][0] => -rate,
+                ActiveBound::Upper if bounds[k][1] > bounds[k][0] => rate,
                 _ => 0.0,
             }
         };
@@ -82,7 +82,7 @@ pub(super) fn solve(
                 size(i).total_cmp(&size(j))
             });
         match worst {
-            Some(k) => places[k] = Place::Between,
+            Some(k) => places[k] = ActiveBound::Between,
             None => break,
         }
     }
@@ -96,11 +96,11 @@ fn descend(
     (b, noise): (&[f64], &[f64]),
     bounds: &[[f64; 2]],
     x: &mut DVector<f64>,
-    places: &mut [Place],
+    places: &mut [ActiveBound],
 ) -> bool {
     loop {
         let free: Vec<usize> = (0..b.len())
-            .filter(|&k| places[k] == Place::Between)
+            .filter(|&k| places[k] == ActiveBound::Between)
             .collect();
         let (target, is_minimum) = minimum(w, (b, noise), x, &free);
         // The largest part of the way on which all stay between their bounds.
@@ -109,8 +109,8 @@ fn descend(
         for (&k, target) in free.iter().zip(&target) {
             let way = target - x[k];
             let (bound, place) = match way > 0.0 {
-                true => (bounds[k][1], Place::Upper),
-                false => (bounds[k][0], Place::Lower),
+                true => (bounds[k][1], ActiveBound::Upper),
+                false => (bounds[k][0], ActiveBound::Lower),
             };
             let room = (bound - x[k]) / way;
             if way != 0.0 && room < part {

@@ -14,7 +14,7 @@ use crate::kinematics::{Blocked, Pose, Reason, Solution, Solver};
 
 /// A pose, with the coordinates of its solver.
 #[derive(Clone)]
-struct Place {
+struct PoseInChart {
     coordinates: Vec<usize>,
     pose: Pose,
 }
@@ -67,8 +67,8 @@ impl FreeMotion {
         solver: &mut Solver,
         solution: &mut Solution,
         given: &impl Given,
-        home: &Place,
-    ) -> Result<Vec<Place>, Error> {
+        home: &PoseInChart,
+    ) -> Result<Vec<PoseInChart>, Error> {
         /// Step in radians or sizes of the mechanism: three degrees.
         const STEP: f64 = 0.05;
         /// Longest way to one side: two turns, as other coordinates than a crank's angle may be slower.
@@ -157,8 +157,8 @@ impl FreeMotion {
         solver: &mut Solver,
         solution: &mut Solution,
         given: &impl Given,
-        home: &Place,
-    ) -> Result<Vec<Place>, Error> {
+        home: &PoseInChart,
+    ) -> Result<Vec<PoseInChart>, Error> {
         /// Places along one freedom: a maximum of the energy, or a dead point, stands between two
         /// equilibria, and three of each in a turn are many.
         const MOST_PLACES: usize = 6;
@@ -237,8 +237,8 @@ impl FreeMotion {
     }
 
     /// Returns the place at which the solver is.
-    fn here(&self, solver: &Solver) -> Place {
-        Place {
+    fn here(&self, solver: &Solver) -> PoseInChart {
+        PoseInChart {
             coordinates: self.charts.current().to_vec(),
             pose: solver.pose().clone(),
         }
@@ -249,7 +249,7 @@ impl FreeMotion {
         &mut self,
         solver: &mut Solver,
         solution: &mut Solution,
-        place: &Place,
+        place: &PoseInChart,
     ) -> Result<(), Error> {
         let forces = &mut self.equations.forces;
         let is_chart = (self.charts).select(solver, forces, solution, &place.coordinates);

@@ -20,7 +20,7 @@ const WORTH: f64 = 1e-3;
 const SECANT: f64 = 1e-7;
 
 /// Values that variables shall take at rows of a motion.
-pub(crate) struct Target {
+pub(crate) struct WantedValues {
     /// The rows of the scenario, one per pose.
     pub(crate) rows: Range<usize>,
     /// The driver whose values at these rows are free; those of the scenario are where the search
@@ -40,7 +40,7 @@ pub(crate) struct Target {
 /// All targets of a fit. The unknowns are the free parameters, then the free values of drivers.
 pub(crate) struct Fit {
     pub(crate) scenario: Scenario,
-    pub(crate) targets: Vec<Target>,
+    pub(crate) targets: Vec<WantedValues>,
     pub(crate) free: Vec<ParameterId>,
     /// The directions in which each of these grows.
     pub(crate) directions: Vec<Direction>,
@@ -52,7 +52,7 @@ impl Fit {
     /// Prepares a fit, and gives each target its places among residuals and unknowns.
     pub(crate) fn new(
         scenario: Scenario,
-        mut targets: Vec<Target>,
+        mut targets: Vec<WantedValues>,
         free: Vec<ParameterId>,
         turns: Option<DriverId>,
     ) -> Self {
@@ -175,7 +175,7 @@ impl Follower {
     /// Returns the values of a target's variables along the motion of its free driver, from the
     /// present pose both ways: until the curve closes, as far as the driver goes, or by
     /// [`MOST_STEPS`].
-    fn scan(&mut self, target: &Target, free: &FreeDriver) -> Result<Curve, Refused> {
+    fn scan(&mut self, target: &WantedValues, free: &FreeDriver) -> Result<Curve, Refused> {
         let row = target.rows.start;
         self.go(row)?;
         let middle = self.runner.motion.solver.pose().clone();
@@ -219,7 +219,7 @@ impl Follower {
     }
 
     /// Returns the values of a target's variables.
-    pub(crate) fn values(&self, target: &Target) -> Vec<f64> {
+    pub(crate) fn values(&self, target: &WantedValues) -> Vec<f64> {
         let columns = target.columns.iter();
         columns.map(|column| self.runner.value(column)).collect()
     }
@@ -254,7 +254,7 @@ impl Follower {
     /// one.
     pub(crate) fn go_nearer(
         &mut self,
-        target: &Target,
+        target: &WantedValues,
         free: &FreeDriver,
         pose: usize,
         (start, [low, high]): (f64, [f64; 2]),
@@ -311,7 +311,7 @@ impl Follower {
     /// second one without the curvature of the path.
     fn slope(
         &mut self,
-        target: &Target,
+        target: &WantedValues,
         free: &FreeDriver,
         pose: usize,
     ) -> Result<(f64, f64), Refused> {
@@ -346,7 +346,7 @@ impl Follower {
     }
 }
 
-impl Target {
+impl WantedValues {
     /// Returns the index of a value wanted.
     pub(crate) fn index(&self, column: usize, pose: usize) -> usize {
         column * self.rows.len() + pose

@@ -17,7 +17,7 @@ use crate::attempt::Attempt;
 use crate::call::{Cores, apart};
 use crate::error::{Failure, exception};
 use crate::fit::Targets;
-use crate::follower::{Fit, Target};
+use crate::follower::{Fit, WantedValues};
 use crate::rows::{
     DriverRow, EquilibriumRow, LinearRow, NamedRow, ParameterRow, Problem, RangeRow, driver_row,
     equilibrium_row, forces, inputs, linear_row, measures, parameter_row, problems, range_row,
@@ -280,7 +280,7 @@ impl Mechanism {
                     FreeDriver::new(&self.model, self.driver_named(&name)?, in_order)
                 });
                 rows += poses;
-                Ok(Target {
+                Ok(WantedValues {
                     rows: rows - poses..rows,
                     free_driver: free_driver.transpose()?,
                     columns: self.chosen(&columns),

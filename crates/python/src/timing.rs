@@ -33,14 +33,14 @@ pub(crate) struct FreeDriver {
 }
 
 /// Values of a target's variables along the motion of its free driver, at equal steps.
-pub(crate) struct Curve {
+pub(crate) struct SampledVariables {
     /// The driver's value and the values of the variables at each point.
     pub(crate) points: Vec<(f64, Vec<f64>)>,
     /// Whether the last point is the first one again, after full turns of the driver.
     pub(crate) closes: bool,
 }
 
-impl Curve {
+impl SampledVariables {
     pub(crate) fn new(driver: f64, values: Vec<f64>) -> Self {
         Self {
             points: vec![(driver, values)],
@@ -157,7 +157,7 @@ impl FreeDriver {
     /// Chooses a point of a curve for each pose, so that the sum of gaps is smallest. The points of
     /// the curve are in the order of the driver's values, `gaps` by pose, then by point. Returns the
     /// sum and the driver's values.
-    pub(crate) fn nearest(&self, curve: &Curve, gaps: &[Vec<f64>]) -> (f64, Vec<f64>) {
+    pub(crate) fn nearest(&self, curve: &SampledVariables, gaps: &[Vec<f64>]) -> (f64, Vec<f64>) {
         let points = &curve.points;
         if !self.in_order {
             let nearest = gaps.iter().map(|gaps| {

@@ -209,7 +209,7 @@ pub(in crate::kinematics) fn range(
 
 /// A sample with the derivatives of the measures by the driver's value, not numbers where there are
 /// none. At a limit they are those just in front of it, which have the same signs.
-struct Place {
+struct SampleWithSlopes {
     sample: Sample,
     slopes: Vec<f64>,
 }
@@ -234,7 +234,7 @@ struct Explorer<'a> {
 
 impl Explorer<'_> {
     /// Moves the driver in one direction from the start, up (1) or down (−1).
-    fn explore(&mut self, sign: f64, samples: &mut Vec<Place>) -> End {
+    fn explore(&mut self, sign: f64, samples: &mut Vec<SampleWithSlopes>) -> End {
         let index = self.driver.index();
         let from = self.start.drivers[index];
         let driver = &self.compiled.system.mechanism().drivers[index];
@@ -335,7 +335,7 @@ impl Explorer<'_> {
 
     /// Moves the driver to a value and adds the poses on the way to the samples. Returns the end of
     /// the range if it lies before the value.
-    fn move_to(&mut self, value: f64, samples: &mut Vec<Place>) -> Option<End> {
+    fn move_to(&mut self, value: f64, samples: &mut Vec<SampleWithSlopes>) -> Option<End> {
         let before = self.state.pose.clone();
         let tracked = self.track(value);
         let reached = self.state.pose.clone();
@@ -370,7 +370,12 @@ impl Explorer<'_> {
 
     /// Adds the change points that the last path passed, and samples in front of them. Returns the
     /// pose of the last one, or that before the path.
-    fn pass_crossings(&mut self, before: &Pose, reached: &Pose, samples: &mut Vec<Place>) -> Pose {
+    fn pass_crossings(
+        &mut self,
+        before: &Pose,
+        reached: &Pose,
+        samples: &mut Vec<SampleWithSlopes>,
+    ) -> Pose {
         let mut from = before.clone();
         let [start, end] = [before, reached].map(|pose| self.value_of(pose));
         for crossing in self.tracker.crossed().to_vec() {
@@ -398,7 +403,13 @@ impl Explorer<'_> {
     }
 
     /// Adds samples between two poses until bodies move little from one to the next.
-    fn divide(&mut self, from: &Pose, to: &Pose, halvings: u32, samples: &mut Vec<Place>) {
+    fn divide(
+        &mut self,
+        from: &Pose,
+        to: &Pose,
+        halvings: u32,
+        samples: &mut Vec<SampleWithSlopes>,
+    ) {
         if halvings == 0 || self.motion(from, to) <= 1.0 {
             return;
         }
@@ -419,7 +430,7 @@ impl Explorer<'_> {
         from: &Pose,
         stopped: &Pose,
         limit: f64,
-        samples: &mut Vec<Place>,
+        samples: &mut Vec<SampleWithSlopes>,
     ) {
         let parts = self
             .motion(from, stopped)
@@ -456,7 +467,11 @@ impl Explorer<'_> {
 
     /// Returns the limit as a sample, with the slopes of the place where the motion stopped in front
     /// of it; `None` if other blocks do not close there. The pose stays.
-    fn place_at(&mut self, point: &SingularPoint, stopped: &Place) -> Option<Place> {
+    fn place_at(
+        &mut self,
+        point: &SingularPoint,
+        stopped: &SampleWithSlopes,
+    ) -> Option<SampleWithSlopes> {
         let mut pose = stopped.sample.pose.clone();
         pose.q.clone_from(&point.q);
         pose.drivers.clone_from(&point.drivers);
@@ -472,7 +487,7 @@ impl Explorer<'_> {
         let closed = others.all(|block| block.close(&mut block_state, Limits::STEP).is_ok());
         state.accept_bodies();
         let is_near = closed && self.motion(&stopped.sample.pose, &self.state.pose) <= 1.0;
-        let place = is_near.then(|| Place {
+        let place = is_near.then(|| SampleWithSlopes {
             sample: self.sample(),
             slopes: stopped.slopes.clone(),
         });
@@ -491,7 +506,7 @@ impl Explorer<'_> {
 
     /// Returns the least and the greatest value of each measure: the best of the samples, and of the
     /// places between two of them where the derivative by the driver changes its sign.
-    fn extremes(&mut self, places: &[Place]) -> Vec<[Extreme; 2]> {
+    fn extremes(&mut self, places: &[SampleWithSlopes]) -> Vec<[Extreme; 2]> {
         let count = if places.is_empty() {
             0
         } else {
@@ -505,8 +520,8 @@ impl Explorer<'_> {
     }
 
     /// Returns the minimum (`sign` 1) or maximum (−1) of a measure.
-    fn extreme(&mut self, measure: usize, sign: f64, places: &[Place]) -> Extreme {
-        let value = |place: &Place| sign * place.sample.measures[measure];
+    fn extreme(&mut self, measure: usize, sign: f64, places: &[SampleWithSlopes]) -> Extreme {
+        let value = |place: &SampleWithSlopes| sign * place.sample.measures[measure];
         let mut best = (places.iter())
             .map(|place| Extreme {
                 value: place.sample.measures[measure],
@@ -541,7 +556,12 @@ impl Explorer<'_> {
     /// Finds the minimum (`sign` 1) or maximum (−1) of a measure between two places, by
     /// Newton–Raphson on its derivative and by bisection where that leaves the interval or converges
     /// slowly.
-    fn refine(&mut self, measure: usize, sign: f64, [a, b]: [&Place; 2]) -> Option<Extreme> {
+    fn refine(
+        &mut self,
+        measure: usize,
+        sign: f64,
+        [a, b]: [&SampleWithSlopes; 2],
+    ) -> Option<Extreme> {
         let [mut low, mut high] = [a, b].map(|place| place.sample.driver);
         let width = high - low;
         // At most one of them is a limit.
@@ -601,7 +621,7 @@ impl Explorer<'_> {
     }
 
     /// Returns the present pose as a sample with the slopes of the measures.
-    fn place(&mut self) -> Place {
+    fn place(&mut self) -> SampleWithSlopes {
         let sample = self.sample();
         let has_rates = self.solve_rates();
         let slopes = (self.compiled.measures.iter()).map(|measure| {
@@ -611,7 +631,7 @@ impl Explorer<'_> {
                 f64::NAN
             }
         });
-        Place {
+        SampleWithSlopes {
             slopes: slopes.collect(),
             sample,
         }

@@ -74,7 +74,7 @@ impl Base for Interval {
 }
 
 /// The place on a curve at one pose, with derivatives by s.
-struct Place<S> {
+struct CurvePoint<S> {
     /// C on the axes of the curve's marker.
     point: [Taylor<S, 2>; 2],
     /// C′ of the curve without its offset.
@@ -132,7 +132,7 @@ impl CurvePath {
         }
     }
 
-    fn place<S: Base>(&self, coefficient: impl Fn(CoefficientId) -> f64, s: S) -> Place<S> {
+    fn place<S: Base>(&self, coefficient: impl Fn(CoefficientId) -> f64, s: S) -> CurvePoint<S> {
         let jets = self.jets(&coefficient, s);
         let point = jets.map(|c| Taylor::<S, 2>::new(c.value, [c.first(), c.second()]));
         let slope = jets.map(|c| Taylor::<S, 2>::new(c.first(), [c.second(), c.third()]));
@@ -141,7 +141,7 @@ impl CurvePath {
         let along = jets.map(|c| Taylor::<S, 1>::new(c.first(), [c.second()]));
         let bend = jets.map(|c| Taylor::<S, 1>::new(c.second(), [c.third()]));
         let turn = dot(quarter_turn(along), bend) / dot(along, along);
-        Place {
+        CurvePoint {
             point: beside(point, slope, offset),
             along: jets.map(|c| c.first()),
             turn: [turn.value, turn.first()],

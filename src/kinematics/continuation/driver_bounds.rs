@@ -58,7 +58,7 @@ pub(super) fn bound_drivers(
             }
             DriverPath::Motion => {
                 let driver = DriverId(index);
-                let motion = Motion {
+                let motion = MotionOverStep {
                     driver,
                     ends,
                     row: system.driver_row(driver),
@@ -73,7 +73,7 @@ pub(super) fn bound_drivers(
 }
 
 /// A prescribed motion over a sub-step.
-struct Motion<'a> {
+struct MotionOverStep<'a> {
     driver: DriverId,
     /// Its values at both ends.
     ends: [f64; 2],
@@ -81,7 +81,7 @@ struct Motion<'a> {
     row: &'a Equation,
 }
 
-impl Motion<'_> {
+impl MotionOverStep<'_> {
     /// Bounds the deviation from the straight line between the ends, for parameters that may move.
     // Its stack of operands is no part of steps without motions.
     #[inline(never)]

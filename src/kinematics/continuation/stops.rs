@@ -66,7 +66,7 @@ pub(super) struct StopWatch {
     /// Twice the rounding in the deviations, as far as it has shown.
     rounding: Vec<f64>,
     /// The limit that the motion comes to.
-    target: Option<Target>,
+    target: Option<LimitAhead>,
     /// The place on the path beyond which the next sub-step must not end.
     pub(super) most: f64,
     /// Whether the motion may go beyond stops, but not beyond the ends of curves.
@@ -82,7 +82,7 @@ struct Limit {
 
 /// A limit beyond which the motion leads on its way.
 #[derive(Clone, Copy, Debug)]
-struct Target {
+struct LimitAhead {
     limit: Limit,
     /// Bound of the deviation over a sub-step, divided by the square of its length.
     bend: f64,
@@ -269,7 +269,7 @@ impl StopWatch {
                             shortest = length;
                             let bend = gap.deviation / (h * h);
                             let is_beyond = gap.ends[1] < 0.0 && bend.is_finite();
-                            self.target = is_beyond.then_some(Target { limit, bend });
+                            self.target = is_beyond.then_some(LimitAhead { limit, bend });
                         }
                     }
                     Verdict::Reached => return Err(self.describe(compiled, limit)),
@@ -292,7 +292,7 @@ impl StopWatch {
         [start, end]: [f64; 2],
     ) {
         self.most = f64::INFINITY;
-        if let Some(Target { limit, bend }) = self.target {
+        if let Some(LimitAhead { limit, bend }) = self.target {
             let [before, now] = self.gaps(limit);
             let slope = (before - now) / (end - start);
             let at_limit = AT_LIMIT * self.scale(compiled, state, limit.stop);

@@ -1,7 +1,7 @@
 //! The motion through a change point, interpolated between its two sides.
 
 use super::locate::Finding;
-use super::reduced::{Place, ReducedEquation};
+use super::reduced::{BlockOnLine, ReducedEquation};
 use crate::kinematics::alignment::Alignment;
 use crate::kinematics::linear::nan_or_larger;
 use crate::kinematics::plan::{Crossing, INNER, Polynomial, divided_differences};
@@ -16,7 +16,7 @@ pub(super) const REACH: f64 = 0.25;
 const LEAST_REACH: f64 = 0.004;
 /// Ratio of the distance of a trial to that of the one before it.
 const SHORTER: f64 = 0.8;
-/// Place between inner places and ends at which the error of the polynomials is about the largest.
+/// BlockOnLine between inner places and ends at which the error of the polynomials is about the largest.
 const BETWEEN: f64 = 0.85;
 /// Error of an acceleration, for velocities of one, with which no shorter crossing is tried.
 const ACCURATE_ENOUGH: f64 = 4e-12;
@@ -46,7 +46,7 @@ pub(super) fn crossing_of(
     let rates = rates.map(|(velocity, scale)| velocity * scale);
     let unknowns = point.z.iter().zip(rates);
     let center = Center {
-        place: Place {
+        place: BlockOnLine {
             tau: point.tau,
             unknowns: unknowns
                 .map(|(z, rate)| Jet::new(*z, [rate, 0.0]))
@@ -98,7 +98,7 @@ fn error_of_shape(position: f64, width: f64) -> f64 {
 fn error_between(
     crossing: &Crossing,
     equation: &ReducedEquation<'_>,
-    places: &[Place; 2],
+    places: &[BlockOnLine; 2],
     speed: f64,
 ) -> f64 {
     let width = crossing.half_width * speed;
@@ -119,7 +119,7 @@ fn error_between(
 /// The change point.
 struct Center {
     /// The motion there, its second derivative being unknown: zero.
-    place: Place,
+    place: BlockOnLine,
     alpha: f64,
     /// Slopes dα/dτ of the motion and of the other one, which may be infinite.
     slopes: [f64; 2],
@@ -131,9 +131,9 @@ struct Center {
 fn place_at(
     equation: &mut ReducedEquation<'_>,
     center: &Center,
-    near: &Place,
+    near: &BlockOnLine,
     off: f64,
-) -> Option<Place> {
+) -> Option<BlockOnLine> {
     let [slope, other] = center.slopes;
     let apart = if other.is_finite() {
         ((slope - other) * off).abs()
@@ -153,8 +153,8 @@ fn interpolate(
     equation: &mut ReducedEquation<'_>,
     center: &Center,
     half_width: f64,
-) -> Option<(Vec<Polynomial>, [Place; 2])> {
-    let mut pair = |near: [&Place; 2], place: f64| {
+) -> Option<(Vec<Polynomial>, [BlockOnLine; 2])> {
+    let mut pair = |near: [&BlockOnLine; 2], place: f64| {
         let off = place * half_width;
         let before = place_at(equation, center, near[0], -off)?;
         let behind = place_at(equation, center, near[1], off)?;
@@ -177,8 +177,13 @@ fn interpolate(
 
 /// Splits an unknown at ±x into an even part E(y) and an odd part x P(y), y = x². Returns E with its
 /// first and second derivative in y, then P.
-fn even_and_odd(x: f64, [before, behind]: &[Place; 2], k: usize, half_width: f64) -> [[f64; 3]; 2] {
-    let jet = |place: &Place| {
+fn even_and_odd(
+    x: f64,
+    [before, behind]: &[BlockOnLine; 2],
+    k: usize,
+    half_width: f64,
+) -> [[f64; 3]; 2] {
+    let jet = |place: &BlockOnLine| {
         let unknown = &place.unknowns[k];
         let second = unknown.second() * (half_width * half_width);
         [unknown.value, unknown.first() * half_width, second]

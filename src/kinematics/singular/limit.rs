@@ -108,7 +108,7 @@ impl Interpolated {
 }
 
 /// The motion through the present state.
-struct Course {
+struct MotionThrough {
     /// Value, rates and third derivative of each driver.
     drivers: Vec<Jet3>,
     /// Time from the pose to each place \[s\]; `None` for the motion along the driver's value.
@@ -264,7 +264,7 @@ impl NearPoint {
         state: &State,
         driver_rates: &[Jet],
         unknown: f64,
-    ) -> Option<Course> {
+    ) -> Option<MotionThrough> {
         let time = state.pose.time;
         let parameters = &state.pose.parameters;
         // The rate of the fastest body per unit of the driver's value: a natural unit of its course.
@@ -291,7 +291,7 @@ impl NearPoint {
                 .iter()
                 .all(|u| u.derivatives.iter().all(|rate| *rate == 0.0))
         };
-        (times.is_some() || !self.is_at || is_at_rest()).then_some(Course { drivers, times })
+        (times.is_some() || !self.is_at || is_at_rest()).then_some(MotionThrough { drivers, times })
     }
 
     /// Returns the times at which a driver is at the places; `None` if it does not pass them
@@ -326,7 +326,7 @@ impl NearPoint {
         &self,
         compiled: &mut CompiledMechanism,
         state: &mut State,
-        course: &Course,
+        course: &MotionThrough,
         unknown: f64,
         evaluate: &mut impl FnMut(
             &mut CompiledMechanism,

@@ -57,7 +57,7 @@ pub(super) struct ReducedEquation<'a> {
 }
 
 /// The motion of a block at one place of the line: its unknowns with their derivatives in τ.
-pub(super) struct Place {
+pub(super) struct BlockOnLine {
     pub(super) tau: f64,
     pub(super) unknowns: Vec<Jet>,
 }
@@ -227,7 +227,7 @@ impl<'a> ReducedEquation<'a> {
     }
 
     /// Follows the motion of the block from a place to τ, by its own solver.
-    pub(super) fn follow(&mut self, from: &Place, tau: f64) -> Option<Place> {
+    pub(super) fn follow(&mut self, from: &BlockOnLine, tau: f64) -> Option<BlockOnLine> {
         self.upstream.move_to(tau)?;
         let off = tau - from.tau;
         for (&column, z) in self.columns.iter().zip(&from.unknowns) {
@@ -241,7 +241,7 @@ impl<'a> ReducedEquation<'a> {
             let rates = [tangent.velocity()[column], tangent.acceleration()[column]];
             Jet::new(at.coordinate(column), rates)
         });
-        Some(Place {
+        Some(BlockOnLine {
             tau,
             unknowns: unknowns.collect(),
         })
@@ -458,7 +458,7 @@ impl<'a> ReducedEquation<'a> {
     }
 
     /// Returns α at a place of the motion, with its first derivative.
-    pub(super) fn alpha_along(&self, place: &Place) -> [f64; 2] {
+    pub(super) fn alpha_along(&self, place: &BlockOnLine) -> [f64; 2] {
         let rates = place.unknowns.iter().map(Jet::first).zip(&self.scales);
         let scaled = rates
             .zip(self.c.iter())

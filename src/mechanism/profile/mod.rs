@@ -92,7 +92,7 @@ fn degrees(theta: f64) -> f64 {
 /// Made once; [`set_parameters`](Self::set_parameters) then changes it without allocating.
 #[derive(Clone, Debug)]
 pub struct ProfileInForce {
-    curve: Curve,
+    curve: ContourInForce,
     /// Values of all parameters.
     parameters: Vec<f64>,
     /// Parameters that the profile uses.
@@ -180,7 +180,7 @@ impl ProfileBounds {
 }
 
 #[derive(Clone, Debug)]
-enum Curve {
+enum ContourInForce {
     Expression {
         expression: Expression,
         in_force: Box<ExpressionInForce>,
@@ -209,7 +209,7 @@ impl ProfileInForce {
     #[must_use]
     pub fn new(profile: &Profile, parameters: usize) -> Self {
         let curve = match profile {
-            Profile::Expression(expression) => Curve::Expression {
+            Profile::Expression(expression) => ContourInForce::Expression {
                 expression: expression.clone(),
                 in_force: Box::default(),
                 sectors: Sectors::new(),
@@ -217,7 +217,7 @@ impl ProfileInForce {
             Profile::Table {
                 table,
                 interpolation,
-            } => Curve::Points {
+            } => ContourInForce::Points {
                 points: ClosedPoints::new(table.points.len(), *interpolation),
                 table: table.clone(),
             },
@@ -252,8 +252,8 @@ impl ProfileInForce {
             *value = parameter(ParameterId(index));
         }
         match &mut self.curve {
-            Curve::Points { table, points } => points.set(table, &parameter)?,
-            Curve::Expression {
+            ContourInForce::Points { table, points } => points.set(table, &parameter)?,
+            ContourInForce::Expression {
                 expression,
                 in_force,
                 sectors,
@@ -264,7 +264,7 @@ impl ProfileInForce {
         }
         self.check()?;
         self.joint = Joint::Kink;
-        if let Curve::Expression { expression, .. } = &self.curve
+        if let ContourInForce::Expression { expression, .. } = &self.curve
             && expression.has_pieces()
         {
             self.joint = self.examine_joints();
@@ -287,7 +287,7 @@ impl ProfileInForce {
                 });
             }
         }
-        let Curve::Expression { expression, .. } = &self.curve else {
+        let ContourInForce::Expression { expression, .. } = &self.curve else {
             return Ok(());
         };
         let [start, end] = [0.0, TAU].map(|theta| self.evaluate(expression, theta));
@@ -356,7 +356,7 @@ impl ProfileInForce {
 
     /// Visits the narrow ranges in which the contour cannot be shown to be smooth. They overlap.
     fn visit_seams<E>(&self, mut visit: impl FnMut([f64; 2]) -> Result<(), E>) -> Result<(), E> {
-        let Curve::Expression { expression, .. } = &self.curve else {
+        let ContourInForce::Expression { expression, .. } = &self.curve else {
             return Ok(());
         };
         let parameter = |p: ParameterId| self.parameters[p.index()];
@@ -391,7 +391,7 @@ impl ProfileInForce {
     #[must_use]
     pub fn radius(&self, theta: f64) -> Jet3 {
         last_or_new(&self.last.radius, theta.to_bits(), || match &self.curve {
-            Curve::Expression {
+            ContourInForce::Expression {
                 expression,
                 in_force,
                 ..
@@ -400,7 +400,7 @@ impl ProfileInForce {
                 let radius = in_force.evaluate(turned);
                 radius.unwrap_or_else(|| self.evaluate(expression, turned))
             }
-            Curve::Points { points, .. } => points.radius(theta),
+            ContourInForce::Points { points, .. } => points.radius(theta),
         })
     }
 
@@ -423,7 +423,7 @@ impl ProfileInForce {
     pub fn bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
         let range = [theta, reach].map(f64::to_bits);
         last_or_new(&self.last.bounds, range, || match &self.curve {
-            Curve::Expression {
+            ContourInForce::Expression {
                 expression,
                 sectors,
                 ..
@@ -435,7 +435,7 @@ impl ProfileInForce {
                 };
                 sectors.bounds(contour, theta, reach)
             }
-            Curve::Points { points, .. } => Some(ProfileBounds {
+            ContourInForce::Points { points, .. } => Some(ProfileBounds {
                 radius: points.bounds(theta, reach),
                 jumps: points.jumps(),
             }),
@@ -497,13 +497,15 @@ impl ProfileInForce {
         let parameter =
             |p: ParameterId| Jet3::fixed(Dual::new(self.parameters[p.index()], [change(p)]));
         ProfileAlong(match &self.curve {
-            Curve::Expression { expression, .. } => CurveAlong::Expression {
+            ContourInForce::Expression { expression, .. } => CurveAlong::Expression {
                 expression: expression.clone(),
                 parameters: (0..self.parameters.len())
                     .map(|p| parameter(ParameterId(p)))
                     .collect(),
             },
-            Curve::Points { table, points } => CurveAlong::Points(points.along(table, &parameter)),
+            ContourInForce::Points { table, points } => {
+                CurveAlong::Points(points.along(table, &parameter))
+            }
         })
     }
 }

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use super::closed_points::{ClosedPoints, parts_of_turn};
-use super::{Curve, Joint, ProfileInForce};
+use super::{ContourInForce, Joint, ProfileInForce};
 use crate::mechanism::expression::MOST_SWITCHES;
 use crate::mechanism::{Expression, Interval, Jet3, Number, ParameterId, Table, Taylor};
 
@@ -40,8 +40,10 @@ impl ProfileInForce {
     #[must_use]
     pub fn moving(&self) -> MovingProfile {
         let curve = match &self.curve {
-            Curve::Expression { expression, .. } => MovingCurve::Expression(expression.clone()),
-            Curve::Points { table, points } => MovingCurve::Points {
+            ContourInForce::Expression { expression, .. } => {
+                MovingCurve::Expression(expression.clone())
+            }
+            ContourInForce::Points { table, points } => MovingCurve::Points {
                 table: table.clone(),
                 points: Box::new(points.moving()),
             },

@@ -260,7 +260,7 @@ struct Loop {
 
 /// An angle that an uncertain arm turns.
 #[derive(Clone, Copy)]
-enum Target {
+enum UncertainTurn {
     /// The angle of a link.
     Link(usize),
     /// The angle between the links.
@@ -309,7 +309,7 @@ impl Loop {
         [0, 1].map(|k| {
             let pairs = path.pairs();
             pairs
-                .map(|pair| self.turn_by_pair(pair, Target::Link(k), bounds, frames))
+                .map(|pair| self.turn_by_pair(pair, UncertainTurn::Link(k), bounds, frames))
                 .sum()
         })
     }
@@ -321,38 +321,39 @@ impl Loop {
         let single = path.arms().iter().filter(|arm| !arm.paired);
         let single = single.map(|arm| {
             let bound = bounds.body(arm.body as usize);
-            let bend = self.bend(arm, bound.turn, Target::Spread);
-            let others = self.others(Target::Spread);
+            let bend = self.bend(arm, bound.turn, UncertainTurn::Spread);
+            let others = self.others(UncertainTurn::Spread);
             self.quotient(arm.ends(bound, frames), others, bend) * bound.angle_deviation
         });
         let pairs = path.pairs();
-        let pairs = pairs.map(|pair| self.turn_by_pair(pair, Target::Spread, bounds, frames));
+        let pairs =
+            pairs.map(|pair| self.turn_by_pair(pair, UncertainTurn::Spread, bounds, frames));
         let inverse = larger(self.inverses[0], self.inverses[1]);
         single.chain(pairs).sum::<f64>() + gap * self.widest() * inverse
     }
 
     /// Returns d of an angle, at the start and at the end: the other link, or d_a − d_b.
-    fn others(&self, target: Target) -> [Vector2<f64>; 2] {
+    fn others(&self, target: UncertainTurn) -> [Vector2<f64>; 2] {
         self.links.map(|links| match target {
-            Target::Link(k) => links[1 - k],
-            Target::Spread => links[0] - links[1],
+            UncertainTurn::Link(k) => links[1 - k],
+            UncertainTurn::Spread => links[0] - links[1],
         })
     }
 
     /// Bounds the deviation of t × d from its chord for an arm t that turns by `turn`.
-    fn bend(&self, arm: &Arm, turn: f64, target: Target) -> f64 {
+    fn bend(&self, arm: &Arm, turn: f64, target: UncertainTurn) -> f64 {
         let bend =
             |other: usize| arm.length * self.lengths[other] * sagitta(self.turns[other] - turn);
         match target {
-            Target::Link(k) => bend(1 - k),
-            Target::Spread => bend(0) + bend(1),
+            UncertainTurn::Link(k) => bend(1 - k),
+            UncertainTurn::Spread => bend(0) + bend(1),
         }
     }
 
     /// Returns the largest length of d_a − d_b. The angle between the links runs straight, so that
     /// it is the length at one of the ends.
     fn widest(&self) -> f64 {
-        let [start, end] = self.others(Target::Spread).map(|d| d.norm());
+        let [start, end] = self.others(UncertainTurn::Spread).map(|d| d.norm());
         larger(start, end)
     }
 
@@ -360,7 +361,7 @@ impl Loop {
     fn turn_by_pair(
         &self,
         pair: [&Arm; 2],
-        target: Target,
+        target: UncertainTurn,
         bounds: &StepBounds,
         frames: &[BodyPose],
     ) -> f64 {

@@ -14,12 +14,12 @@ use biela::mechanism::{DriverId, DriverSource, Jet, Mechanism, Order};
 pub(in crate::cli) struct Signals {
     times: Vec<f64>,
     /// Values of each column; a driver with a column has one of positions.
-    columns: Vec<(Target, Vec<f64>)>,
+    columns: Vec<(ColumnInput, Vec<f64>)>,
 }
 
 /// The input that a column gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Target {
+enum ColumnInput {
     Driver(DriverId, Order),
     /// An input of a force, by its index among all.
     Force(usize),
@@ -33,7 +33,7 @@ impl Signals {
     /// nearest the file's start, as the FMU does.
     fn unwrap(&mut self, mechanism: &Mechanism) {
         for (target, values) in &mut self.columns {
-            if let Target::Driver(id, Order::Position) = *target
+            if let ColumnInput::Driver(id, Order::Position) = *target
                 && let driver = &mechanism.drivers[id.index()]
                 && let DriverSource::Input { start } = driver.source
                 && driver.wrapped
@@ -50,7 +50,7 @@ impl Signals {
     /// Turns the drivers that follow signals into inputs.
     pub(in crate::cli) fn make_inputs(&self, mechanism: &mut Mechanism) {
         for (target, values) in &self.columns {
-            if let Target::Driver(id, Order::Position) = *target {
+            if let ColumnInput::Driver(id, Order::Position) = *target {
                 let start = values[0];
                 mechanism.drivers[id.index()].source = DriverSource::Input { start };
             }
@@ -69,7 +69,7 @@ impl Signals {
     }
 
     fn of(&self, driver: DriverId, order: Order) -> Option<&[f64]> {
-        let wanted = Target::Driver(driver, order);
+        let wanted = ColumnInput::Driver(driver, order);
         let found = self.columns.iter().find(|(target, _)| *target == wanted);
         found.map(|(_, values)| &values[..])
     }
@@ -96,7 +96,7 @@ impl Signals {
     /// Writes the inputs of forces at a time; those without a signal are left as they are.
     pub(in crate::cli) fn write_forces(&self, time: f64, inputs: &mut [f64]) {
         for (target, values) in &self.columns {
-            if let Target::Force(input) = *target {
+            if let ColumnInput::Force(input) = *target {
                 inputs[input] = self.interpolate(values, time).value;
             }
         }
@@ -173,7 +173,7 @@ impl Given for Part<'_> {
 
     fn loads(&self, time: f64, loads: &mut [f64]) {
         for (target, values) in &self.signals.columns {
-            if let Target::Force(input) = *target {
+            if let ColumnInput::Force(input) = *target {
                 loads[input] = self.line(values, time).value;
             }
         }
@@ -184,11 +184,11 @@ impl Signals {
     /// Returns whether there is a column of a load, by its place.
     pub(super) fn has_load(&self, place: usize) -> bool {
         let mut targets = self.columns.iter();
-        targets.any(|(target, _)| *target == Target::Force(place))
+        targets.any(|(target, _)| *target == ColumnInput::Force(place))
     }
 }
 
-impl Target {
+impl ColumnInput {
     /// Returns the input of this name.
     fn named(name: &str, mechanism: &Mechanism) -> Option<Self> {
         let mut inputs = mechanism.load_inputs().into_iter();

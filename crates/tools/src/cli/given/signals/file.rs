@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Signals, Target};
+use super::{ColumnInput, Signals};
 use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;
 use biela::kinematics::Output;
@@ -134,7 +134,7 @@ struct Header<'a> {
 struct Column<'a> {
     place: usize,
     name: &'a str,
-    target: Target,
+    target: ColumnInput,
     /// Unit of the input.
     unit: Unit,
     /// Factor from an SI value to the values of the column.
@@ -178,15 +178,15 @@ impl<'a> Header<'a> {
             return Err("it has no column besides `time`".to_owned());
         }
         let outputs = Output::all(&Arc::new(mechanism.clone()));
-        let targets = others().filter_map(|(_, (name, _))| Target::named(name, mechanism));
-        let given: Vec<Target> = targets.collect();
+        let targets = others().filter_map(|(_, (name, _))| ColumnInput::named(name, mechanism));
+        let given: Vec<ColumnInput> = targets.collect();
         // Message on the first column that is neither an input nor an output.
         let mut foreign = None;
         for (place, &(name, unit)) in others() {
             if driven.contains(&name) {
                 return Err(format!("both --drive and --input give `{name}`"));
             }
-            if let Some(target) = Target::named(name, mechanism) {
+            if let Some(target) = ColumnInput::named(name, mechanism) {
                 header.add(Column::new(place, name, target, mechanism), unit)?;
                 continue;
             }
@@ -261,10 +261,10 @@ impl<'a> Header<'a> {
 }
 
 impl<'a> Column<'a> {
-    fn new(place: usize, name: &'a str, target: Target, mechanism: &Mechanism) -> Self {
+    fn new(place: usize, name: &'a str, target: ColumnInput, mechanism: &Mechanism) -> Self {
         let unit = match target {
-            Target::Driver(id, order) => Output::of_driver(mechanism, id)[order as usize].unit,
-            Target::Force(input) => mechanism.load_inputs()[input].unit.unwrap_or(Unit::ONE),
+            ColumnInput::Driver(id, order) => Output::of_driver(mechanism, id)[order as usize].unit,
+            ColumnInput::Force(input) => mechanism.load_inputs()[input].unit.unwrap_or(Unit::ONE),
         };
         Self {
             place,
@@ -306,7 +306,7 @@ impl<'a> Column<'a> {
 
     /// Warns of angles that look like degrees.
     fn warning_of_degrees(&self, values: &[f64]) -> Option<Message> {
-        let is_angle = matches!(self.target, Target::Driver(_, Order::Position))
+        let is_angle = matches!(self.target, ColumnInput::Driver(_, Order::Position))
             && self.unit.name == Unit::RADIAN.name;
         if self.has_unit || !is_angle {
             return None;
@@ -368,7 +368,7 @@ struct Unknown {
 
 impl Unknown {
     /// Describes a column of a file whose columns give the inputs `given`.
-    fn new(name: &str, mechanism: &Mechanism, given: &[Target]) -> Self {
+    fn new(name: &str, mechanism: &Mechanism, given: &[ColumnInput]) -> Self {
         let forces = mechanism.given_forces();
         if let Some(given) = forces.iter().find(|given| given.name == name) {
             let force = &mechanism.forces[given.force].name;
@@ -384,7 +384,7 @@ impl Unknown {
         let inputs = mechanism.load_inputs();
         let variables = |order: Order| drivers().map(move |d| format!("{d}.{}", order.suffix()));
         let is_left = |name: &&str| {
-            let target = Target::named(name, mechanism);
+            let target = ColumnInput::named(name, mechanism);
             target.is_none_or(|target| !given.contains(&target))
         };
         let positions: Vec<String> = variables(Order::Position).collect();
