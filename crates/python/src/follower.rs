@@ -10,7 +10,7 @@ use biela_tools::cli::check_parameter;
 use crate::error::Failure;
 use crate::runner::Runner;
 use crate::scenario::Scenario;
-use crate::timing::{Curve, FreeDriver, MOST_STEPS};
+use crate::timing::{FreeDriver, MOST_STEPS, SampledVariables};
 
 /// Largest number of steps to the nearest pose to a target.
 const NEARER: usize = 2;
@@ -175,13 +175,17 @@ impl Follower {
     /// Returns the values of a target's variables along the motion of its free driver, from the
     /// present pose both ways: until the curve closes, as far as the driver goes, or by
     /// [`MOST_STEPS`].
-    fn scan(&mut self, target: &WantedValues, free: &FreeDriver) -> Result<Curve, Refused> {
+    fn scan(
+        &mut self,
+        target: &WantedValues,
+        free: &FreeDriver,
+    ) -> Result<SampledVariables, Refused> {
         let row = target.rows.start;
         self.go(row)?;
         let middle = self.runner.motion.solver.pose().clone();
         let start = middle.drivers[free.driver.index()];
         let [low, high] = free.bounds;
-        let mut curve = Curve::new(start, self.values(target));
+        let mut curve = SampledVariables::new(start, self.values(target));
         for step in [free.step, -free.step] {
             self.runner.return_to(&middle);
             let mut at = start;
