@@ -31,6 +31,20 @@ pub enum EventKind {
     Slides,
 }
 
+impl EventKind {
+    /// Returns its word in tables: `impact`, `rests`, `leaves`, `sticks` or `slides`.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Impact { .. } => "impact",
+            Self::Rests => "rests",
+            Self::Leaves => "leaves",
+            Self::Sticks => "sticks",
+            Self::Slides => "slides",
+        }
+    }
+}
+
 /// Kinds of what meets at a contact: each has words of its own.
 pub(super) enum Meeting {
     /// A coordinate and its stop.

@@ -84,6 +84,22 @@ impl Source {
         }
     }
 
+    /// Returns the source with another text, which may name the same files.
+    #[must_use]
+    pub fn with_text(self, text: impl Into<String>) -> Self {
+        let Self {
+            name,
+            folder,
+            files,
+            ..
+        } = self;
+        Self {
+            folder,
+            files,
+            ..Self::new(name, text)
+        }
+    }
+
     /// Returns the source with files that it may name, each with its content: what a program
     /// without folders has in place of [`in_folder`](Self::in_folder).
     #[must_use]

@@ -3,7 +3,7 @@
 use super::given::conditions::Scenario;
 use super::given::signals::Signals;
 use super::told::message::Message;
-use biela::dynamics::{self, Motion, Notice};
+use biela::dynamics::{self, Event, Motion, Notice};
 use biela::kinematics::{DriverPath, Error, Path, Solver};
 use biela::mechanism::{DriverId, show_time};
 
@@ -12,8 +12,8 @@ pub(super) struct SignalledMotion {
     pub(super) motion: Motion,
     /// Notices that were not told yet.
     pub(super) notices: Vec<Message>,
-    /// Times of all events of the free motion \[s\].
-    pub(super) events: Vec<f64>,
+    /// All events of the free motion.
+    pub(super) events: Vec<Event>,
     path: Path,
     signals: Signals,
 }
@@ -135,7 +135,7 @@ impl SignalledMotion {
     fn note(&mut self) {
         for notice in self.motion.notices() {
             if let Notice::Event(event, _) = &notice {
-                self.events.push(event.time);
+                self.events.push(*event);
             }
             self.notices.push(notice.into());
         }

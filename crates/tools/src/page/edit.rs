@@ -44,9 +44,7 @@ pub fn edit(
     let mut text = TomlText::new(text)?;
     for (parameter, value) in mechanism.parameters.iter().zip(&pose.parameters) {
         if names.contains(&parameter.name) {
-            let own = ["parameters", &*parameter.name, "value"];
-            let is_number = !text.has_keys(&own[..2]);
-            set_number(&mut text, if is_number { &own[..2] } else { &own }, *value)?;
+            set_parameter(&mut text, &parameter.name, *value)?;
         }
     }
     if place != Place::Keep {
@@ -73,6 +71,34 @@ pub fn edit(
         }
     }
     Ok(text.as_str().to_owned())
+}
+
+/// Returns the text with other values of parameters, by their names, and with other starts of freedoms:
+/// name, key and value \[SI\].
+///
+/// # Errors
+///
+/// The text is not that of the mechanism.
+pub fn change_values<'a>(
+    text: &str,
+    parameters: impl IntoIterator<Item = (&'a str, f64)>,
+    starts: impl IntoIterator<Item = (&'a str, &'a str, f64)>,
+) -> Result<String, EditError> {
+    let mut text = TomlText::new(text)?;
+    for (name, value) in parameters {
+        set_parameter(&mut text, name, value)?;
+    }
+    for (freedom, key, value) in starts {
+        set_number(&mut text, &["freedoms", freedom, key], value)?;
+    }
+    Ok(text.as_str().to_owned())
+}
+
+/// Sets the value of a parameter, which is a number or a table.
+fn set_parameter(text: &mut TomlText, name: &str, value: f64) -> Result<(), EditError> {
+    let own = ["parameters", name, "value"];
+    let is_number = !text.has_keys(&own[..2]);
+    set_number(text, if is_number { &own[..2] } else { &own }, value)
 }
 
 /// Sets a number of a table; the unit of the old one stays.

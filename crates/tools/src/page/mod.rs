@@ -50,7 +50,7 @@ mod undo;
 mod values;
 
 pub use along::Over;
-pub use edit::{EditError, Place, edit};
+pub use edit::{EditError, Place, change_values, edit};
 pub use held::assembled;
 pub use host::Host;
 pub use outcome::{Obstacle, Outcome};

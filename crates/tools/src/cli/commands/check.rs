@@ -12,7 +12,8 @@ use clap::{Args, ValueEnum};
 use forces::Forces;
 
 use crate::cli::free::AtRest;
-use crate::cli::given::input::{Input, warn_of_misfits};
+use crate::cli::given::input::warn_of_misfits;
+use crate::cli::given::settings::Settings;
 use crate::cli::given::signals::Signals;
 use crate::cli::given::times::Times;
 use crate::cli::results::output::print;
@@ -53,6 +54,8 @@ pub(in crate::cli) struct Check {
     /// The format of the report: text, or JSON in SI units with all errors of the file.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
+    #[command(flatten)]
+    settings: Settings,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -87,13 +90,13 @@ impl Check {
                 "--estimates is of --format text: the pose is in the JSON".to_owned(),
             ));
         }
-        let (report, outcome) = json::report(&self.file, self.modes);
+        let (report, outcome) = json::report(&self.file, &self.settings, self.modes);
         print(&format!("{report:#}\n"))?;
         outcome
     }
 
     fn tell(self) -> Result<(), Error> {
-        let input = Input::read(&self.file)?;
+        let input = self.settings.read(&self.file)?;
         let mechanism = &input.mechanism;
         print(&describe_equations(mechanism))?;
         let refuse = |error: kinematics::Error| {

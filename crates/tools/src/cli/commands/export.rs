@@ -8,6 +8,7 @@ use clap::Args;
 
 use crate::cli::given::input::{Input, warn_of_misfits};
 use crate::cli::given::input_files::InputFiles;
+use crate::cli::given::settings::Settings;
 use crate::cli::pages::documentation;
 use crate::cli::pages::page_solver;
 use crate::cli::results::form::Form;
@@ -73,12 +74,14 @@ pub(in crate::cli) struct Export {
     /// Leave out the page on which the mechanism is moved by hand.
     #[arg(long, conflicts_with = "model_description")]
     no_page: bool,
+    #[command(flatten)]
+    settings: Settings,
 }
 
 impl Export {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
         let generated = generation_time()?;
-        let input = Input::read(&self.file)?;
+        let input = self.settings.read(&self.file)?;
         let mechanism = &input.mechanism;
         let mut files = InputFiles::new(&self.file, mechanism);
         if let Some(path) = self.model_description {

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::given::input::{Input, warn_of_misfits};
+use crate::cli::given::input::warn_of_misfits;
 use crate::cli::given::input_files::InputFiles;
+use crate::cli::given::settings::Settings;
 use crate::cli::pages::live;
 use crate::cli::pages::page_solver::{self, Solver};
 use crate::cli::results::output::{tell_written, write};
@@ -42,12 +43,14 @@ pub(in crate::cli) struct Page {
     /// studio* leads there.
     #[arg(long, value_name = "ADDRESS")]
     studio: Option<String>,
+    #[command(flatten)]
+    settings: Settings,
 }
 
 impl Page {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
         self.output.as_deref().map_or(Ok(()), check_page)?;
-        let input = Input::read(&self.file)?;
+        let input = self.settings.read(&self.file)?;
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.html", input.mechanism.name)));

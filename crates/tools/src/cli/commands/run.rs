@@ -12,6 +12,7 @@ use crate::cli::given::times::{Span, Times};
 use crate::cli::motion::SignalledMotion;
 use crate::cli::results::column::{self, Output};
 use crate::cli::results::csv::Csv;
+use crate::cli::results::events::Events;
 use crate::cli::results::film::{Film, FilmFile};
 use crate::cli::results::picture::{Format, extension};
 use crate::cli::results::plot::Plot;
@@ -19,7 +20,7 @@ use crate::cli::results::recorder::Recorder;
 use crate::cli::results::stdout::{STDOUT, is_stdout};
 use crate::cli::results::xlsx::{MOST_COLUMNS, MOST_ROWS, Xlsx};
 use crate::cli::told::error::Error;
-use crate::cli::told::message::{Message, tell};
+use crate::cli::told::message::{Message, remark, tell_errors_only};
 use crate::cli::told::progress::Progress;
 use crate::drawing::ForcePlace;
 use biela::mechanism::{Driver, DriverSource, Mechanism, rounded};
@@ -29,7 +30,7 @@ use biela::mechanism::{Driver, DriverSource, Mechanism, rounded};
 /// Each row has the time, then value, velocity and acceleration of every driver, then all
 /// outputs of the FMU under their names there, in SI units. Drivers that are FMI inputs stay at
 /// their start values unless --drive or --input says how they move; velocities and accelerations
-/// are exact derivatives of these motions.
+/// are exact derivatives of these motions. Freedoms move by the forces from their starts on.
 ///
 /// The mechanism starts in the assembly mode of its file. At a dead point the run ends with an
 /// error; the results up to there are written.
@@ -60,7 +61,7 @@ pub(in crate::cli) struct Run {
     #[arg(short, long, value_name = "NAMES", value_delimiter = ',')]
     variables: Vec<String>,
     /// The file to write: CSV, or Excel if its extension is .xlsx; `-` is CSV to stdout [default:
-    /// stdout, if there is neither --plot nor --animate].
+    /// stdout, if no other result is asked for].
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Plot positions, velocities and accelerations over time, drivers in panels of their own;
@@ -80,6 +81,13 @@ pub(in crate::cli) struct Run {
     /// exert, and springs, dampers and loads.
     #[arg(long, requires = "animate")]
     forces: bool,
+    /// Write the events of free motion as CSV: time, kind, name of the stop, joint or friction, and at
+    /// an impact the speed before; `-` is stdout.
+    #[arg(long, value_name = "CSV")]
+    events: Option<PathBuf>,
+    /// Tell errors only: neither warnings and notes nor what was written.
+    #[arg(short, long)]
+    quiet: bool,
 }
 
 /// Largest number of rows that a picture holds.
@@ -91,7 +99,11 @@ const BYTES_PER_NUMBER: f64 = 20.0;
 
 impl Run {
     pub(in crate::cli) fn run(mut self) -> Result<(), Error> {
-        if self.output.is_none() && self.plot.is_none() && self.animate.is_none() {
+        if self.quiet {
+            tell_errors_only();
+        }
+        let results = [&self.output, &self.plot, &self.animate, &self.events];
+        if results.iter().all(|path| path.is_none()) {
             self.output = Some(PathBuf::from(STDOUT));
         }
         let format = self.plot.as_deref().map(Format::of).transpose()?;
@@ -154,6 +166,9 @@ impl Run {
         if let (Some(path), Some(format)) = (self.plot.clone(), format) {
             recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice, over)));
         }
+        if let Some(path) = self.events.clone() {
+            recorders.push(Box::new(Events { path }));
+        }
         let mut motion = SignalledMotion::start(home_solver, scenario);
         motion = motion.and_then(|motion| match asks_forces {
             true => motion.with_forces(asks_reactions),
@@ -181,7 +196,7 @@ impl Run {
             .map(|r| r.finish(&motion.motion, &motion.events));
         let failed: Vec<Error> = finished.filter_map(Result::err).collect();
         if let Some(line) = motion.describe_integration() {
-            tell(line);
+            remark(line);
         }
         let mut errors = outcome.err().into_iter().chain(failed);
         let Some(last) = errors.next_back() else {
@@ -203,7 +218,7 @@ impl Run {
         // Rows on a terminal show the progress themselves.
         let fills_terminal =
             self.output.as_deref().is_some_and(is_stdout) && std::io::stdout().is_terminal();
-        let mut progress = Progress::new(times.steps, fills_terminal);
+        let mut progress = Progress::new(times.steps, self.quiet || fills_terminal);
         for row in 0..=times.steps {
             let advanced = motion.advance(times.at(row));
             for notice in motion.notices.drain(..) {
@@ -263,7 +278,7 @@ impl Run {
         if let Some(path) = &self.input {
             files.add("the file of --input", path);
         }
-        let outputs = [&self.output, &self.plot, &self.animate];
+        let outputs = [&self.output, &self.plot, &self.animate, &self.events];
         files.refuse_as_outputs(&outputs.map(Option::as_deref))
     }
 

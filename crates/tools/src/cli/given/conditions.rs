@@ -1,4 +1,4 @@
-//! Parameters and motions of drivers as the command line sets them.
+//! Motions of drivers, and other values than the file's, as the command line sets them.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -6,15 +6,14 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::input::{Input, warn_of_misfits};
+use super::settings::Settings;
 use super::signals::Signals;
 use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;
-use biela::fmi;
 use biela::kinematics::{self, Solver};
 use biela::mechanism::{
-    Dimension, Driver, DriverId, DriverSource, ExpressionError, Jet, Mechanism, Order, Parameter,
-    ParameterId, PrescribedMotion, Unit, Variable, help, is_plain, large_angle, large_length,
-    large_velocity, not_finite, quoted, shown,
+    DriverId, DriverSource, ExpressionError, Jet, Mechanism, ParameterId, PrescribedMotion,
+    Variable, help, is_plain, large_angle, large_velocity, not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
@@ -25,10 +24,8 @@ pub(in crate::cli) struct Conditions {
     /// may be given several times.
     #[arg(short, long, value_name = "DRIVER=MOTION")]
     drive: Vec<String>,
-    /// Change a parameter for this run, such as 'crank_length=120*mm', or the start of a freedom, such
-    /// as 'swing.velocity=3'; may be given for several.
-    #[arg(short, long, value_name = "PARAMETER=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    settings: Settings,
 }
 
 /// A mechanism under the conditions of a command line.
@@ -45,7 +42,7 @@ pub(in crate::cli) struct Scenario {
 impl Conditions {
     /// Returns whether no option is given.
     pub(in crate::cli) fn is_empty(&self) -> bool {
-        self.drive.is_empty() && self.set.is_empty()
+        self.drive.is_empty() && self.settings.is_empty()
     }
 
     /// Applies the options to a mechanism whose run starts at `start`; the CSV file `signals`
@@ -56,7 +53,7 @@ impl Conditions {
         start: f64,
         signals: Option<&Path>,
     ) -> Result<Scenario, Error> {
-        let parameters = self.parameters(mechanism)?;
+        let parameters = self.settings.parameters(mechanism)?;
         let mut driven = mechanism.clone();
         let mut driven_by_option = Vec::new();
         let mut forces_by_option = Vec::new();
@@ -97,7 +94,7 @@ impl Conditions {
             driven.drivers[index].follows = None;
             driven_by_option.push(DriverId(index));
         }
-        for (freedom, order, value) in self.starts(mechanism)? {
+        for (freedom, order, value) in self.settings.starts(mechanism)? {
             driven.set_start(freedom, order, value);
         }
         let signals = match signals {
@@ -146,85 +143,7 @@ impl Conditions {
         text: &str,
         is_angle: bool,
     ) -> Result<f64, Error> {
-        let parameters = self.parameters(mechanism)?;
-        let expression = mechanism.parse_expression(text, None);
-        let expression = expression.map_err(|error| refuse(option, text, &error))?;
-        let value = expression.value(&parameters);
-        if !value.is_finite() {
-            let text = quoted(text);
-            return Err(Error::Usage(format!("{option}: {text} is not finite")));
-        }
-        if is_angle {
-            warn_of_degrees(option, text, Jet::constant(value));
-        }
-        Ok(value)
-    }
-
-    /// Splits each assignment of --set into the place among parameters and starts of freedoms, and the
-    /// expression.
-    fn settings(&self, mechanism: &Mechanism) -> Result<Vec<(usize, &str)>, Error> {
-        let starts = mechanism.starts_of_freedoms();
-        let names = mechanism.parameters.iter().map(|p| p.name.as_str());
-        let names = names.chain(starts.iter().map(|(name, ..)| name.as_str()));
-        let is_driven = |driver: &&Driver| !matches!(driver.source, DriverSource::Free { .. });
-        let drivers = mechanism.drivers.iter().filter(is_driven);
-        let drivers = drivers.map(|driver| driver.name.as_str());
-        SET.assignments(
-            &self.set,
-            &names.collect::<Vec<_>>(),
-            &drivers.collect::<Vec<_>>(),
-        )
-    }
-
-    /// Returns the starts of freedoms that are set \[SI\].
-    fn starts(&self, mechanism: &Mechanism) -> Result<Vec<(DriverId, Order, f64)>, Error> {
-        let starts = mechanism.starts_of_freedoms();
-        let settings = self.settings(mechanism)?;
-        let set = settings.into_iter().filter_map(|(index, text)| {
-            let (_, freedom, order) = starts.get(index.checked_sub(mechanism.parameters.len())?)?;
-            Some((*freedom, *order, text))
-        });
-        let value = |(freedom, order, text): (DriverId, Order, &str)| {
-            let kind = mechanism.drivers[freedom.index()].coordinate.kind;
-            let is_angle = kind.is_angle() && order == Order::Position;
-            Ok((
-                freedom,
-                order,
-                self.value(mechanism, SET.option, text, is_angle)?,
-            ))
-        };
-        set.map(value).collect()
-    }
-
-    /// Returns the parameters in force \[SI\].
-    fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
-        let defaults = mechanism.default_parameters();
-        let mut values = defaults.clone();
-        for (index, text) in self.settings(mechanism)? {
-            let Some(parameter) = mechanism.parameters.get(index) else {
-                continue;
-            };
-            parameter
-                .check_settable()
-                .map_err(|error| Error::Usage(format!("--set: {error}")))?;
-            values[index] = mechanism
-                .parse_expression(text, None)
-                .map_err(|error| SET.refuse(text, &error))?
-                .value(&defaults);
-            match parameter.unit {
-                Some(unit) if unit.dimension == Dimension::ANGLE => {
-                    warn_of_degrees(SET.option, text, Jet::constant(values[index]));
-                }
-                Some(unit) if unit.dimension == Dimension::LENGTH => {
-                    warn_of_length(text, [values[index], defaults[index]], unit);
-                }
-                _ => {}
-            }
-            check_limits(parameter, values[index])
-                .map_err(|message| Error::Usage(format!("--set: {message}")))?;
-        }
-        mechanism.derive_parameters(&mut values);
-        Ok(values)
+        self.settings.value(mechanism, option, text, is_angle)
     }
 }
 
@@ -237,16 +156,6 @@ pub(in crate::cli) fn warn_of_degrees(option: &str, text: &str, angle: Jet) {
     if let Some((message, number)) = suspect.filter(|_| is_plain(text)) {
         let number = shown(number);
         let warning = format!("{option}: {message}; degrees are written `{number}*deg`");
-        Message::Warning(warning).show();
-    }
-}
-
-/// Warns of a length of --set made of plain numbers that looks like millimetres beside the file's.
-fn warn_of_length(text: &str, [value, usual]: [f64; 2], unit: Unit) {
-    let suspect = large_length(value, usual, unit.display);
-    if let Some((message, name)) = suspect.filter(|_| is_plain(text)) {
-        let number = shown(value);
-        let warning = format!("{}: {message}; write `{number}*{name}`", SET.option);
         Message::Warning(warning).show();
     }
 }
@@ -300,20 +209,14 @@ impl Scenario {
 }
 
 /// An option that assigns expressions to names.
-struct Assigning {
-    option: &'static str,
-    kind: &'static str,
-    example: &'static str,
+pub(super) struct Assigning {
+    pub(super) option: &'static str,
+    pub(super) kind: &'static str,
+    pub(super) example: &'static str,
     /// Kind of the names that another option assigns to, and that option.
-    other: [&'static str; 2],
+    pub(super) other: [&'static str; 2],
 }
 
-const SET: Assigning = Assigning {
-    option: "--set",
-    kind: "parameter",
-    example: "crank_length=120*mm",
-    other: ["driver", "--drive"],
-};
 const DRIVE: Assigning = Assigning {
     option: "--drive",
     kind: "driver",
@@ -324,7 +227,7 @@ const DRIVE: Assigning = Assigning {
 impl Assigning {
     /// Splits each `NAME=EXPRESSION` into the name's index in `names` and the expression; another
     /// option assigns to the names `others`.
-    fn assignments<'a>(
+    pub(super) fn assignments<'a>(
         &self,
         given: &'a [String],
         names: &[&str],
@@ -361,13 +264,13 @@ impl Assigning {
         unknown(option, kind, name, names)
     }
 
-    fn refuse(&self, text: &str, error: &ExpressionError) -> Error {
+    pub(super) fn refuse(&self, text: &str, error: &ExpressionError) -> Error {
         refuse(self.option, text, error)
     }
 }
 
 /// Returns the error of an expression, with a mark under its place.
-fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
+pub(super) fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
     let column = text[..error.span.start].chars().count();
     let help = (error.help.as_ref()).map_or_else(String::new, |help| format!("; {help}"));
     let mut message = format!("{option}: {}{help}", error.message);
@@ -375,18 +278,6 @@ fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
         message += &format!("\n  {text}\n  {:column$}^", "");
     }
     Error::Usage(message)
-}
-
-/// Refuses a value that the FMU refuses, in its words.
-pub(in crate::cli) fn check_limits(parameter: &Parameter, value: f64) -> Result<(), String> {
-    let limits = [parameter.min, parameter.max];
-    fmi::check_limits(&parameter.name, value, limits).map_err(|error| {
-        let unit = match error {
-            fmi::Error::Range { .. } => parameter.unit,
-            _ => None,
-        };
-        format!("{error}{}", unit.map_or_else(String::new, Unit::suffix))
-    })
 }
 
 /// Returns the error of an unknown name, with the known name that may be meant.

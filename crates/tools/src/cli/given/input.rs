@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use crate::cli::render::render;
 use crate::cli::told::error::Error;
-use crate::cli::told::message::{Message, tell};
+use crate::cli::told::message::{Message, tell, tells_errors_only};
 use biela::kinematics::{self, Path, Solver, offer_start};
-use biela::mechanism::{Diagnostic, Mechanism, Source};
+use biela::mechanism::{Diagnostic, Mechanism, Severity, Source};
 
 /// A mechanism file that was read without errors.
 #[derive(Debug)]
@@ -19,9 +19,7 @@ pub(in crate::cli) struct Input {
 impl Input {
     /// Reads a file and shows its errors and warnings on stderr.
     pub(in crate::cli) fn read(path: &FilePath) -> Result<Self, Error> {
-        Self::read_and(path, |source, diagnostics| {
-            tell(render(source, diagnostics, true) + "\n");
-        })
+        Self::read_and(path, show_diagnostics)
     }
 
     /// Reads a file, and shows its errors or warnings by `show` if there are any.
@@ -39,6 +37,14 @@ impl Input {
                 false => Error::read(path)(error),
             }
         })?;
+        Self::parse(source, show)
+    }
+
+    /// Reads a source, and shows its errors or warnings by `show` if there are any.
+    pub(super) fn parse(
+        source: Source,
+        show: impl FnOnce(&Source, &[Diagnostic]),
+    ) -> Result<Self, Error> {
         let (mechanism, diagnostics) = match Mechanism::parse(&source) {
             Ok((mechanism, warnings)) => (Ok(mechanism), warnings),
             Err(errors) => (Err(Error::Diagnosed), errors),
@@ -89,6 +95,20 @@ impl Input {
         let file = || self.source.name().to_owned();
         cannot_rest(solver).map_or(Ok(()), |why| Err(Error::Stopped { file: file(), why }))
     }
+}
+
+/// Shows errors or warnings of a file on stderr.
+pub(super) fn show_diagnostics(source: &Source, diagnostics: &[Diagnostic]) {
+    if tells_errors_only() && !has_errors(diagnostics) {
+        return;
+    }
+    tell(render(source, diagnostics, true) + "\n");
+}
+
+/// Returns whether errors are among the problems of a file.
+pub(super) fn has_errors(diagnostics: &[Diagnostic]) -> bool {
+    let mut severities = diagnostics.iter().map(|found| found.severity);
+    severities.any(|severity| severity == Severity::Error)
 }
 
 /// Says why the mechanism cannot rest where the solver has assembled it at the file's own values; an

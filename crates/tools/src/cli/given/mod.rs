@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `input` | a mechanism file, read with its diagnostics |
 //! | `input_files` | the files that a command reads, which no result overwrites |
-//! | `conditions` | parameters and motions of drivers |
+//! | `settings` | other values of parameters and starts than the file's |
+//! | `conditions` | settings, and motions of drivers |
 //! | `signals` | values of drivers and of inputs of forces over time |
 //! | `times` | the times of a run |
 //! | `bounds` | values of a driver between which it is followed |
@@ -13,5 +14,6 @@ pub(super) mod bounds;
 pub(super) mod conditions;
 pub(super) mod input;
 pub(super) mod input_files;
+pub(super) mod settings;
 pub(super) mod signals;
 pub(super) mod times;

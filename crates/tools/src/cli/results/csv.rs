@@ -9,7 +9,7 @@ use super::output::tell_written;
 use super::recorder::Recorder;
 use super::stdout::is_stdout;
 use crate::cli::told::error::Error;
-use biela::dynamics::Motion;
+use biela::dynamics::{Event, Motion};
 
 /// Writes rows as they come.
 pub(in crate::cli) struct Csv {
@@ -59,7 +59,7 @@ impl Recorder for Csv {
         })
     }
 
-    fn finish(mut self: Box<Self>, _motion: &Motion, _events: &[f64]) -> Result<(), Error> {
+    fn finish(mut self: Box<Self>, _motion: &Motion, _events: &[Event]) -> Result<(), Error> {
         self.out.flush().map_err(Error::write(&self.path))?;
         tell_written(&self.path);
         Ok(())

@@ -9,7 +9,7 @@ use super::recorder::Recorder;
 use crate::cli::told::error::Error;
 use crate::drawing::ForcePlace;
 use crate::drawing::animation::{Animation, Clock, Moment, moving_gif, moving_svg, page};
-use biela::dynamics::Motion;
+use biela::dynamics::{Event, Motion};
 
 /// The moments of a run.
 pub(in crate::cli) struct Film {
@@ -86,7 +86,7 @@ impl Recorder for FilmFile {
         Ok(())
     }
 
-    fn finish(self: Box<Self>, motion: &Motion, _events: &[f64]) -> Result<(), Error> {
+    fn finish(self: Box<Self>, motion: &Motion, _events: &[Event]) -> Result<(), Error> {
         let animation = self.film.animation(motion);
         let content = match &*extension(&self.path) {
             "svg" => moving_svg(&animation).into_bytes(),

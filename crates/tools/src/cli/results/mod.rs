@@ -9,6 +9,7 @@
 //! | `column` | choices among its columns |
 //! | `csv` | a run as CSV |
 //! | `xlsx` | a run as an Excel file |
+//! | `events` | the events of a run as CSV |
 //! | `plot` | a run as a chart |
 //! | `film` | a run as a page or a picture that moves |
 //! | `picture` | pictures in the format of their file |
@@ -16,6 +17,7 @@
 
 pub(super) mod column;
 pub(super) mod csv;
+pub(super) mod events;
 pub(super) mod film;
 pub(super) mod form;
 pub(super) mod new_file;

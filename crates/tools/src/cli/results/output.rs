@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::stdout::{STDOUT, is_stdout};
 use crate::cli::told::error::Error;
-use crate::cli::told::message::tell;
+use crate::cli::told::message::remark;
 
 /// Writes a file, or to stdout for `-`.
 pub(in crate::cli) fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
@@ -27,6 +27,6 @@ pub(in crate::cli) fn print(text: &str) -> Result<(), Error> {
 /// Tells on stderr that a file was written; nothing for stdout, which shows it itself.
 pub(in crate::cli) fn tell_written(path: &Path) {
     if !is_stdout(path) {
-        tell(format_args!("wrote {}", path.display()));
+        remark(format_args!("wrote {}", path.display()));
     }
 }

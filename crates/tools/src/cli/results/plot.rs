@@ -8,7 +8,7 @@ use super::recorder::Recorder;
 use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;
 use crate::drawing::{Axis, COLOURS, Chart, Line, Panel, Sheet};
-use biela::dynamics::Motion;
+use biela::dynamics::{Event, Motion};
 use biela::mechanism::{BodyId, Dimension, Mechanism, Order, Signal, Unit};
 
 /// Largest number of bodies whose lines can be told apart.
@@ -94,7 +94,8 @@ impl Plot {
 
     /// Returns the chart: one panel per unit, positions first and forces last; angles in degrees.
     /// Drivers have panels of their own, where their ramps leave the results their scale.
-    fn chart(self, mechanism: &Mechanism, events: &[f64]) -> Chart {
+    fn chart(self, mechanism: &Mechanism, events: &[Event]) -> Chart {
+        let times = events.iter().map(|event| event.time).collect();
         let looks = looks(&self.columns, mechanism);
         let mut panels: Vec<((Unit, bool), Panel)> = Vec::new();
         let lines = self.columns.into_iter().zip(self.values).zip(looks);
@@ -121,7 +122,7 @@ impl Plot {
             }
             None => {
                 let [label, unit] = ["time", "s"].map(str::to_owned);
-                (Axis { label, unit }, self.times, events.to_vec())
+                (Axis { label, unit }, self.times, times)
             }
         };
         Chart {
@@ -203,7 +204,7 @@ impl Recorder for Plot {
         Ok(())
     }
 
-    fn finish(mut self: Box<Self>, motion: &Motion, events: &[f64]) -> Result<(), Error> {
+    fn finish(mut self: Box<Self>, motion: &Motion, events: &[Event]) -> Result<(), Error> {
         if self.notes_omission {
             if let Some([shown, moving]) = self.leave_out() {
                 let note = format!(

@@ -8,7 +8,7 @@ use super::column::Output;
 use super::output::{tell_written, write};
 use super::recorder::Recorder;
 use crate::cli::told::error::Error;
-use biela::dynamics::Motion;
+use biela::dynamics::{Event, Motion};
 
 /// Most rows of a sheet, with the line of names.
 pub(in crate::cli) const MOST_ROWS: u64 = 1_048_576;
@@ -65,7 +65,7 @@ impl Recorder for Xlsx {
         Ok(())
     }
 
-    fn finish(self: Box<Self>, motion: &Motion, _events: &[f64]) -> Result<(), Error> {
+    fn finish(self: Box<Self>, motion: &Motion, _events: &[Event]) -> Result<(), Error> {
         let content = self.content(&motion.mechanism().name);
         let content = content.map_err(|error| Error::Usage(format!("--output: {error}")))?;
         write(&self.path, &content)?;

@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 use std::io::Write as _;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use annotate_snippets::renderer::{DEFAULT_ERROR_STYLE, DEFAULT_NOTE_STYLE, DEFAULT_WARNING_STYLE};
 
@@ -16,8 +17,12 @@ pub(in crate::cli) enum Message {
 }
 
 impl Message {
-    /// Writes the message to stderr, with its kind in the colour of diagnostics.
+    /// Writes the message to stderr, with its kind in the colour of diagnostics; nothing but errors where
+    /// only these are told.
     pub(in crate::cli) fn show(&self) {
+        if tells_errors_only() && !matches!(self, Self::Error(_)) {
+            return;
+        }
         let (kind, style, text) = self.parts();
         tell(format_args!("{style}{kind}{style:#}: {text}"));
     }
@@ -59,6 +64,26 @@ impl Display for Message {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (kind, _, text) = self.parts();
         write!(f, "{kind}: {text}")
+    }
+}
+
+/// Whether only errors are told, by this run of the program.
+static ERRORS_ONLY: AtomicBool = AtomicBool::new(false);
+
+/// Tells errors only from now on.
+pub(in crate::cli) fn tell_errors_only() {
+    ERRORS_ONLY.store(true, Ordering::Relaxed);
+}
+
+/// Returns whether only errors are told.
+pub(in crate::cli) fn tells_errors_only() -> bool {
+    ERRORS_ONLY.load(Ordering::Relaxed)
+}
+
+/// Writes a line to stderr that says what was done, unless only errors are told.
+pub(in crate::cli) fn remark(line: impl Display) {
+    if !tells_errors_only() {
+        tell(line);
     }
 }
 

@@ -15,4 +15,5 @@ pub(crate) mod program;
 mod range;
 mod report;
 mod run;
+mod settings;
 mod tolerance;

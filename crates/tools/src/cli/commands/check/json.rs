@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::forces::Forces;
 use super::{NEARLY_SINGULAR, equations_of_joints, excursions};
 use crate::cli::given::input::cannot_rest;
+use crate::cli::given::settings::Settings;
 use crate::cli::told::error::Error;
 use biela::dynamics::KeptStart;
 use biela::kinematics::{self, NeededPlay, OpenJoint, Path, Rates, Solver, System, offer_start};
@@ -15,10 +16,19 @@ use biela::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
 /// Returns the report on a file and the outcome of the command.
 ///
-/// The report tells all errors but that of a file that cannot be read.
-pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>) {
+/// The report tells all errors but those of a file that cannot be read and of settings.
+pub(super) fn report(
+    file: &FilePath,
+    settings: &Settings,
+    modes: bool,
+) -> (Value, Result<(), Error>) {
     let name = file.display().to_string();
-    match Source::open(name.clone(), file) {
+    let read = Source::open(name.clone(), file).map_err(Error::read(file));
+    let changed = read.and_then(|source| match Mechanism::parse(&source) {
+        Ok((mechanism, _)) => settings.changed(source, &mechanism),
+        Err(_) => Ok(source),
+    });
+    match changed {
         Ok(source) => {
             let report = report_on(&source, modes);
             let outcome = match report["ok"].as_bool() {
@@ -27,8 +37,7 @@ pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>)
             };
             (report, outcome)
         }
-        Err(source) => {
-            let error = Error::read(file)(source);
+        Err(error) => {
             let message = error.to_string();
             let report = json!({ "file": name, "ok": false, "error": { "message": message } });
             (report, Err(error))
