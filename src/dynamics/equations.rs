@@ -1,6 +1,6 @@
 //! The right-hand side: accelerations of freedoms at a trial point.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::error::Error;
 use super::gaps::GapWatch;
@@ -37,10 +37,7 @@ pub(super) struct Equations {
     motion: EquationsOfMotion,
     /// From the solver's pose straight to the values at a trial point.
     path: Path,
-    /// √M ∂q/∂u of the freedoms, orthonormal after a solution.
-    columns: DMatrix<f64>,
-    /// √M q̈ where no freedom accelerates, and its parts along the columns.
-    rest: DVector<f64>,
+    /// The parts of √M q̈ where no freedom accelerates along the columns √M ∂q/∂u, made orthonormal.
     along: Vec<f64>,
     /// L of J = L Lᵀ.
     pub(super) factor: DMatrix<f64>,
@@ -126,8 +123,6 @@ impl Equations {
             motion: solver.equations_of_motion(),
             path: Path::new(solver.mechanism()),
             forces,
-            columns: DMatrix::zeros(unknowns, count),
-            rest: DVector::zeros(unknowns),
             along: vec![0.0; count],
             factor: DMatrix::zeros(count, count),
             accelerations: vec![0.0; count],
@@ -592,29 +587,21 @@ impl Equations {
         }
     }
 
-    /// Factorises J, by least squares on √M ∂q/∂u: where J is badly conditioned, as with bodies of very
-    /// different masses, half of its digits are saved. Prepares the forces that hold.
+    /// Factorises J = L Lᵀ. Prepares the forces that hold.
     ///
     /// # Errors
     ///
     /// [`Error::NoInertia`] for freedoms that move no mass.
     fn prepare(&mut self, solver: &Solver) -> Result<(), Error> {
-        let Self {
-            motion,
-            freedoms,
-            point,
-            columns,
-            rest,
+        let EquationsOfMotion {
+            weighted,
+            weighted_rest,
             ..
-        } = self;
-        for (place, freedom) in freedoms.iter().enumerate() {
-            columns.set_column(place, &motion.weighted.column(freedom.index()));
-        }
-        rest.copy_from_slice(&motion.weighted_rest);
+        } = &mut self.motion;
         let definitions = solver.mechanism().drivers.iter();
-        for (index, (driver, rates)) in definitions.zip(&point.drivers).enumerate() {
+        for (column, (driver, rates)) in definitions.zip(&self.point.drivers).enumerate() {
             if !driver.is_free() {
-                rest.axpy(rates.second(), &motion.weighted.column(index), 1.0);
+                weighted_rest.axpy(rates.second(), &weighted.column(column), 1.0);
             }
         }
         self.factorise(solver)?;
@@ -640,40 +627,50 @@ impl Equations {
         }
     }
 
-    /// Makes the columns orthonormal by the modified method of Gram and Schmidt, and takes their parts
-    /// out of the rest: J = L Lᵀ.
+    /// Factorises J by least squares: the modified method of Gram and Schmidt makes the columns √M ∂q/∂u
+    /// of the freedoms orthogonal, and takes their parts out of the rest. Where J is badly conditioned, as
+    /// with bodies of very different masses, this saves half of its digits.
     ///
     /// # Errors
     ///
     /// [`Error::NoInertia`] for freedoms that move no mass.
     fn factorise(&mut self, solver: &Solver) -> Result<(), Error> {
+        let EquationsOfMotion {
+            weighted,
+            weighted_rest: rest,
+            ..
+        } = &mut self.motion;
         let Self {
-            columns,
             factor,
-            rest,
             along,
+            freedoms,
             ..
         } = self;
-        for place in 0..columns.ncols() {
-            // The norm of the column before others were taken out of it.
-            let before = (0..place).fold(0.0, |sum: f64, k| sum.hypot(factor[(place, k)]));
-            let norm = columns.column(place).norm();
-            if norm.is_nan() || norm <= NO_INERTIA * norm.hypot(before) {
-                let freedom = self.freedoms[place].index();
-                let name = &solver.mechanism().drivers[freedom].name;
+        for (place, freedom) in freedoms.iter().enumerate() {
+            let index = freedom.index();
+            let (column, mut others) = weighted.columns_range_pair_mut(index, index + 1..);
+            let square = column.norm_squared();
+            // The parts of others that were taken out of the column.
+            let taken: f64 = (0..place).map(|k| factor[(place, k)].powi(2)).sum();
+            if square.is_nan() || square <= NO_INERTIA.powi(2) * (square + taken) {
+                let name = &solver.mechanism().drivers[index].name;
                 let freedoms = vec![format!("freedom `{name}`")];
                 return Err(Error::NoInertia { freedoms });
             }
+            let norm = square.sqrt();
             factor[(place, place)] = norm;
-            let (mut done, mut others) = columns.columns_range_pair_mut(place, place + 1..);
-            done /= norm;
-            for (k, mut other) in others.column_iter_mut().enumerate() {
-                let part = done.dot(&other);
-                factor[(place + 1 + k, place)] = part;
-                other.axpy(-part, &done, 1.0);
+            along[place] = column.dot(rest) / norm;
+            let later = &freedoms[place + 1..];
+            if later.is_empty() {
+                break;
             }
-            along[place] = done.dot(rest);
-            rest.axpy(-along[place], &done, 1.0);
+            for (k, other) in later.iter().enumerate() {
+                let mut other = others.column_mut(other.index() - index - 1);
+                let part = column.dot(&other) / square;
+                factor[(place + 1 + k, place)] = part * norm;
+                other.axpy(-part, &column, 1.0);
+            }
+            rest.axpy(-along[place] / norm, &column, 1.0);
         }
         Ok(())
     }

@@ -6,7 +6,7 @@
 //!
 //! with w for the accelerations q̈ where all ü are zero. By virtual power no reaction takes part.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::inertial::{Masses, by_body, power};
 use super::solve::{Forces, solve_rates};
@@ -27,7 +27,7 @@ pub struct EquationsOfMotion {
     pub weighted: DMatrix<f64>,
     /// √M q̈ where no driver accelerates, with gravity; bias is its product with the columns and the
     /// efforts against the applied forces.
-    pub weighted_rest: Vec<f64>,
+    pub weighted_rest: DVector<f64>,
     /// Effort of each driver against all applied forces but gravity \[N or N m\].
     pub applied: Vec<f64>,
     /// Power of all applied forces but gravity \[W\].
@@ -54,7 +54,7 @@ impl EquationsOfMotion {
             inertia: DMatrix::zeros(drivers, drivers),
             bias: vec![0.0; drivers],
             weighted: DMatrix::zeros(unknowns, drivers),
-            weighted_rest: vec![0.0; unknowns],
+            weighted_rest: DVector::zeros(unknowns),
             applied: vec![0.0; drivers],
             applied_power: 0.0,
             energy: 0.0,
@@ -105,47 +105,55 @@ impl EquationsOfMotion {
     /// Adds up inertia, bias, power and energies over the bodies; `exerted` is what the applied forces
     /// have bodies demand.
     fn add_bodies(&mut self, masses: &mut Masses<f64>, exerted: &[f64], state: &State) {
-        self.inertia.fill(0.0);
-        self.bias.fill(0.0);
-        self.applied.fill(0.0);
         self.applied_power = 0.0;
         let (mut energies, mut at_unit_speeds) = ([0.0; 2], [0.0; 2]);
         let gravity = masses.gravity;
-        let rates = [self.coasting.velocity(), self.coasting.acceleration()];
-        let [velocities, accelerations] = rates.map(by_body);
-        let frames = state.at.frames();
-        for (k, body) in masses.bodies.iter_mut().enumerate() {
-            body.turn([frames[k].cos, frames[k].sin]);
-            let own = body.energies(frames[k].origin.into(), velocities[k], gravity);
+        let velocities = by_body(self.coasting.velocity()).iter();
+        let rates = velocities.zip(by_body(self.coasting.acceleration()));
+        let loads = by_body(exerted)
+            .iter()
+            .zip(self.weighted_rest.as_mut_slice().as_chunks_mut().0);
+        let places = masses.bodies.iter_mut().zip(state.at.frames());
+        for ((body, frame), ((velocity, acceleration), (exerted, rest))) in
+            places.zip(rates.zip(loads))
+        {
+            body.turn([frame.cos, frame.sin]);
+            let own = body.energies(frame.origin.into(), *velocity, gravity);
             energies = [energies[0] + own[0], energies[1] + own[1]];
             let own = body.at_unit_speeds();
             at_unit_speeds = [at_unit_speeds[0] + own[0], at_unit_speeds[1] + own[1]];
-            let exerted = by_body(exerted)[k];
-            self.applied_power -= power(velocities[k], exerted);
-            let rest = body.weighted(body.felt(velocities[k][2], accelerations[k], gravity));
-            self.weighted_rest[3 * k..3 * k + 3].copy_from_slice(&rest);
-            for (i, unit) in self.units.iter().enumerate() {
-                let unit = by_body(unit.velocity())[k];
-                let weighted = body.weighted(unit);
-                let effort = power(unit, exerted);
-                self.applied[i] += effort;
-                self.bias[i] += power(weighted, rest) + effort;
-                for (row, entry) in weighted.into_iter().enumerate() {
-                    self.weighted[(3 * k + row, i)] = entry;
-                }
-                for j in 0..=i {
-                    let other = self.weighted.fixed_view::<3, 1>(3 * k, j);
-                    let product = power(weighted, [other[0], other[1], other[2]]);
-                    self.inertia[(i, j)] += product;
-                    if j < i {
-                        self.inertia[(j, i)] += product;
-                    }
-                }
-            }
+            self.applied_power -= power(*velocity, *exerted);
+            *rest = body.weighted(body.felt(velocity[2], *acceleration, gravity));
         }
         self.energy = energies[0] + energies[1];
         self.kinetic_energy = energies[0];
         self.at_unit_speeds = at_unit_speeds;
+        let efforts = self.bias.iter_mut().zip(&mut self.applied);
+        for (driver, (unit, (bias, applied))) in self.units.iter().zip(efforts).enumerate() {
+            let (before, mut column) = self.weighted.columns_range_pair_mut(..driver, driver);
+            (*bias, *applied) = (0.0, 0.0);
+            let loads = by_body(exerted)
+                .iter()
+                .zip(by_body(self.weighted_rest.as_slice()));
+            let bodies = masses
+                .bodies
+                .iter()
+                .zip(by_body(unit.velocity()))
+                .zip(loads);
+            let entries = column.as_mut_slice().as_chunks_mut().0.iter_mut();
+            for (to, ((body, unit), (exerted, rest))) in entries.zip(bodies) {
+                *to = body.weighted(*unit);
+                *applied += power(*unit, *exerted);
+                *bias += power(*to, *rest);
+            }
+            *bias += *applied;
+            self.inertia[(driver, driver)] = column.norm_squared();
+            for (other, of_other) in before.column_iter().enumerate() {
+                let product = column.dot(&of_other);
+                self.inertia[(driver, other)] = product;
+                self.inertia[(other, driver)] = product;
+            }
+        }
     }
 }
 
