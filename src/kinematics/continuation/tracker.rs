@@ -18,7 +18,7 @@ use crate::kinematics::Error;
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::OpenJoint;
 use crate::kinematics::newton::{Correction, Rejected};
-use crate::kinematics::path::{Path, PathDrivers};
+use crate::kinematics::path::{DriverPath, Path, PathDrivers};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockState, Crossing, Extrapolation};
 use crate::kinematics::redundancy;
@@ -220,6 +220,9 @@ impl Run<'_> {
     ///
     /// The cause of a stop at `s`.
     fn run(&mut self) -> Result<(), Reason> {
+        if self.is_ordinary() && self.take_at_once() {
+            return Ok(());
+        }
         self.set_out()?;
         self.look_ahead()?;
         while self.s < 1.0 {
@@ -237,6 +240,77 @@ impl Run<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Returns whether only the blocks decide about a path: as long as one sub-step does, nothing else
+    /// takes part.
+    fn is_ordinary(&self) -> bool {
+        let Self {
+            state,
+            path,
+            compiled,
+            ..
+        } = self;
+        let mut paths = path.driver_paths.iter();
+        state.regularity >= NEAR
+            && !self.is_watched
+            && state.pose.crossings.is_empty()
+            && compiled.redundant.is_empty()
+            && self.budget.left > 0
+            && paths.all(|path| matches!(path, DriverPath::Input { .. }))
+            && !path.moves_parameters()
+    }
+
+    /// Takes an ordinary path in one sub-step. Where it cannot, or comes near a singular position, it
+    /// returns false, and the mechanism is at the start of the path.
+    fn take_at_once(&mut self) -> bool {
+        if self.state.refresh(self.compiled).is_err() {
+            return false;
+        }
+        let Self { drivers, path, .. } = self;
+        drivers.parameters_move = false;
+        let h = path.duration;
+        let places = drivers.here.iter_mut().zip(&mut drivers.values);
+        for ((k, driver_path), (here, value)) in path.driver_paths.iter().enumerate().zip(places) {
+            let DriverPath::Input {
+                position,
+                velocity,
+                acceleration,
+                jump,
+            } = *driver_path
+            else {
+                return false;
+            };
+            let start = Jet::new(position, [velocity, acceleration]);
+            let second = h * h * acceleration;
+            *here = Jet::new(position + jump, [h * velocity - jump, second]);
+            *value = start.after(h).value;
+            self.bounds.drivers[k] =
+                0.125 * second.abs() + f64::EPSILON * (here.value.abs() + value.abs());
+        }
+        if self
+            .compiled
+            .system
+            .check_drivers(&self.drivers.values)
+            .is_err()
+        {
+            return false;
+        }
+        self.solve_tangent();
+        self.bounds.begin();
+        self.bounds.parameters.moving = false;
+        let stepped = self.step_blocks(1.0);
+        let Some(correction) = stepped
+            .ok()
+            .filter(|correction| correction.regularity >= NEAR)
+        else {
+            self.return_to_pose();
+            return false;
+        };
+        self.crossed.clear();
+        self.progress.substeps = 1;
+        self.accept(1.0, correction);
+        true
     }
 
     /// Makes sure that the mechanism is at the start of the path.
@@ -424,12 +498,29 @@ impl Run<'_> {
     fn try_step(&mut self, end: f64) -> Result<Correction, Failure> {
         self.set_values(end).map_err(Failure::Value)?;
         let part = [self.s, end];
-        let CompiledMechanism { system, plan, .. } = &mut *self.compiled;
-        let state = &mut *self.state;
+        let (system, state) = (&self.compiled.system, &*self.state);
         self.bounds.begin();
         bound_drivers(system, state, self.drivers, self.path, part, self.bounds)
             .map_err(|jumping| jumping.map_or(Failure::NotCertified, Failure::Jump))?;
-        let extrapolation = extrapolation(&self.drivers.here, end - self.s);
+        let correction = self
+            .step_blocks(end - self.s)
+            .map_err(|Rejected| Failure::NotCertified)?;
+        if !self.compiled.redundant.is_empty() {
+            self.watch_rows()?;
+        }
+        Ok(correction)
+    }
+
+    /// Predicts, corrects and certifies the blocks over a part of the path of this length, at whose end
+    /// the drivers have their values.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`]; all that is derived from the pose is then anywhere.
+    fn step_blocks(&mut self, length: f64) -> Result<Correction, Rejected> {
+        let CompiledMechanism { system, plan, .. } = &mut *self.compiled;
+        let state = &mut *self.state;
+        let extrapolation = extrapolation(&self.drivers.here, length);
         let unit_rates = state.has_single_driver().then_some(&UNIT_RATE[..]);
         let mut block_state = BlockState {
             system,
@@ -438,19 +529,13 @@ impl Run<'_> {
             at: &mut state.at,
             tangent: &mut state.tangent,
         };
-        let correction = plan
-            .step(
-                &mut block_state,
-                extrapolation,
-                &state.pose.q,
-                self.bounds,
-                unit_rates,
-            )
-            .map_err(|Rejected| Failure::NotCertified)?;
-        if !self.compiled.redundant.is_empty() {
-            self.watch_rows()?;
-        }
-        Ok(correction)
+        plan.step(
+            &mut block_state,
+            extrapolation,
+            &state.pose.q,
+            self.bounds,
+            unit_rates,
+        )
     }
 
     /// Returns the place on the path beyond which the next sub-step must not end.

@@ -185,11 +185,12 @@ impl Path {
     /// those for the parameters at s.
     pub(super) fn drivers(&self, s: f64, motions: &Motions, out: &mut [Jet]) {
         let h = self.duration;
-        let t = Jet::linear(self.time(s), h);
         for ((driver, path), out) in self.driver_paths.iter().enumerate().zip(out) {
             // Written in place: a value that is copied on waits for its parts.
             match *path {
-                DriverPath::Motion => *out = motions.evaluate(DriverId(driver), t),
+                DriverPath::Motion => {
+                    *out = motions.evaluate(DriverId(driver), Jet::linear(self.time(s), h));
+                }
                 DriverPath::Input {
                     position,
                     velocity,
