@@ -16,18 +16,20 @@ pub(super) const ORDER: f64 = 8.0;
 /// Storage of the method.
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince {
-    /// Derivatives k at the stages.
-    stages: [Vec<f64>; STAGES],
-    /// Argument of the last stage before the end.
+    /// Derivatives k at the stages, by component.
+    stages: Vec<[f64; STAGES]>,
+    /// Argument of the last stage before the end, and its derivative.
     x: Vec<f64>,
+    dx: Vec<f64>,
 }
 
 impl DormandPrince {
     /// Makes the storage.
     pub(super) fn new(order: usize) -> Self {
         Self {
-            stages: std::array::from_fn(|_| vec![0.0; order]),
+            stages: vec![[0.0; STAGES]; order],
             x: vec![0.0; order],
+            dx: vec![0.0; order],
         }
     }
 
@@ -42,32 +44,40 @@ impl DormandPrince {
         statistics: &mut Statistics,
     ) -> Result<f64, Refusal<S::Cause>> {
         let h = trial.length();
-        self.stages[0].copy_from_slice(trial.dx);
+        set(&mut self.stages, 0, trial.dx);
         for stage in 1..END {
             self.advance(trial.x, h, A[stage], None);
-            let (t, dx) = (trial.time(C[stage]), &mut self.stages[stage]);
-            evaluate(system, t, &self.x, dx, statistics)?;
+            self.evaluate(stage, system, trial.time(C[stage]), statistics)?;
         }
         self.advance(trial.x, h, A[END], Some(end));
         Ok(self.error(control, trial, end))
     }
 
+    /// Evaluates the derivatives of a stage at the argument.
+    fn evaluate<S: System>(
+        &mut self,
+        stage: usize,
+        system: &mut S,
+        t: f64,
+        statistics: &mut Statistics,
+    ) -> Result<(), Refusal<S::Cause>> {
+        evaluate(system, t, &self.x, &mut self.dx, statistics)?;
+        set(&mut self.stages, stage, &self.dx);
+        Ok(())
+    }
+
     /// Sets `x`, or the stage argument, to `from` plus the step along a sum of stages.
     fn advance(&mut self, from: &[f64], h: f64, terms: Terms, x: Option<&mut [f64]>) {
-        let Self {
-            stages,
-            x: argument,
-        } = self;
-        let x = x.unwrap_or(argument);
-        for (component, x) in x.iter_mut().enumerate() {
-            *x = from[component] + h * sum(stages, terms, component);
+        let x = x.unwrap_or(&mut self.x);
+        for ((x, from), stages) in x.iter_mut().zip(from).zip(&self.stages) {
+            *x = from + h * sum(stages, terms);
         }
     }
 
     /// Returns the norm of the error, which joins estimates of orders 5 and 3 to one of order 7
     /// (section II.10, as in `dop853.f`).
     fn error(&self, control: &ErrorControl, trial: &Trial<'_>, end: &[f64]) -> f64 {
-        let norm = |terms| control.norm([trial.x, end], |i| sum(&self.stages, terms, i));
+        let norm = |terms| control.norm([trial.x, end], |i| sum(&self.stages[i], terms));
         let (fifth, third) = (norm(ERROR_5), norm(ERROR_3));
         if fifth == 0.0 {
             return 0.0;
@@ -80,10 +90,9 @@ impl DormandPrince {
     /// the step \[1/s\] (Hairer, Wanner II, section IV.2).
     pub(super) fn lipschitz(&self, control: &ErrorControl, end: [&[f64]; 2]) -> f64 {
         let [x, dx] = end;
-        let change = |to: &[f64], from: &[f64]| control.norm([x, x], |i| to[i] - from[i]);
-        let distance = change(x, &self.x);
+        let distance = control.norm([x, x], |i| x[i] - self.x[i]);
         if distance > 0.0 {
-            change(dx, &self.stages[END - 1]) / distance
+            control.norm([x, x], |i| dx[i] - self.stages[i][END - 1]) / distance
         } else {
             0.0
         }
@@ -100,17 +109,16 @@ impl DormandPrince {
     ) -> Result<(), Refusal<S::Cause>> {
         let h = dense.length();
         let (start, x) = dense.start();
-        self.stages[END].copy_from_slice(dx);
+        set(&mut self.stages, END, dx);
         for stage in END + 1..STAGES {
             self.advance(x, h, A[stage], None);
-            let (t, dx) = (start + C[stage] * h, &mut self.stages[stage]);
-            evaluate(system, t, &self.x, dx, statistics)?;
+            self.evaluate(stage, system, start + C[stage] * h, statistics)?;
         }
-        for (component, dx) in dx.iter().enumerate() {
+        for (component, (dx, stages)) in dx.iter().zip(&self.stages).enumerate() {
             dense.set_component(component, |change| {
-                let first = h * self.stages[0][component] - change;
+                let first = h * stages[0] - change;
                 let second = change - h * dx - first;
-                let [a, b, c, d] = DENSE.map(|terms| h * sum(&self.stages, terms, component));
+                let [a, b, c, d] = DENSE.map(|terms| h * sum(stages, terms));
                 [first, second, a, b, c, d]
             });
         }
@@ -118,10 +126,15 @@ impl DormandPrince {
     }
 }
 
-/// Returns a sum over stages of one component.
-fn sum(stages: &[Vec<f64>], terms: Terms, component: usize) -> f64 {
-    let products = terms
-        .iter()
-        .map(|&(stage, factor)| factor * stages[stage][component]);
+/// Returns a sum over the stages of one component.
+fn sum(stages: &[f64; STAGES], terms: Terms) -> f64 {
+    let products = terms.iter().map(|&(stage, factor)| factor * stages[stage]);
     products.sum()
+}
+
+/// Sets the derivatives of a stage.
+fn set(stages: &mut [[f64; STAGES]], stage: usize, dx: &[f64]) {
+    for (stages, dx) in stages.iter_mut().zip(dx) {
+        stages[stage] = *dx;
+    }
 }
