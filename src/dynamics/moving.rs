@@ -34,7 +34,7 @@ use crate::mechanism::{DriverId, Mechanism};
 /// path.duration = 0.01;
 /// motion.follow(&path).unwrap();
 /// assert_eq!(motion.pose().drivers[0], now + 0.1);
-/// assert_eq!(motion.notices().count(), 0);
+/// motion.tell_notices(|notice| panic!("{notice}"));
 /// ```
 #[derive(Debug)]
 pub struct Motion {

@@ -45,49 +45,53 @@ impl fmt::Display for Notice<'_> {
 }
 
 impl Motion {
-    /// Returns what is worth knowing and was not told yet: overlaps, events, then what holds at the pose.
+    /// Tells what is worth knowing and was not told yet: overlaps, events, then what holds at the pose.
     /// The host asks after each [advance](Self::advance) and after each [solution](Self::solve).
-    pub fn notices(&mut self) -> impl Iterator<Item = Notice<'_>> {
+    pub fn tell_notices<'a>(&'a mut self, mut tell: impl FnMut(Notice<'a>)) {
+        let (has_passed, goes_on) = (self.way == Way::Passed, self.way != Way::Stopped);
+        if has_passed {
+            self.way = Way::Told;
+        }
         let Self {
             solver,
             solution,
             told,
             free,
-            way,
             knows_contacts,
             ..
         } = self;
-        let (has_passed, goes_on) = (*way == Way::Passed, *way != Way::Stopped);
-        let mut approach = None;
-        if has_passed {
-            *way = Way::Told;
-            approach = solver.approach(&mut told.near_singular);
-        }
+        let approach = has_passed.then(|| solver.approach(&mut told.near_singular));
         let solver = &*solver;
         let (mechanism, pose) = (&**solver.mechanism(), solver.pose());
-        let happenings = happenings(free.as_mut(), mechanism);
-        let crossings = crossings(solver).filter(move |_| has_passed);
-        let values = mechanism.drivers.iter().zip(&pose.drivers);
-        let values = values.filter(move |_| goes_on).zip(&mut told.beyond);
-        let excursions = values
-            .filter_map(|((driver, value), beyond)| driver.excursion(*value, pose.time, beyond));
-        let inputs = mechanism.inputs.iter();
-        let inputs = inputs.filter(move |input| goes_on && input.given.is_none());
-        let inputs = inputs.zip(&solution.loads).zip(&mut told.inputs_beyond);
-        let of_inputs = inputs
-            .filter_map(|((input, value), beyond)| input.excursion(*value, pose.time, beyond));
-        let off_pulleys = goes_on.then(|| solver.off_pulleys(&mut told.off_pulleys));
-        let forces = solution.forces().filter(|_| *knows_contacts);
-        let lift_offs = forces.map(|forces| solver.lift_offs(forces, &mut told.lifted));
-        happenings
-            .chain(approach.map(|approach| Notice::Approach(approach, pose.time)))
-            .chain(crossings)
-            .chain(excursions.chain(of_inputs).map(Notice::Excursion))
-            .chain(off_pulleys.into_iter().flatten().map(Notice::OffPulley))
-            .chain(lift_offs.into_iter().flatten().map(Notice::LiftOff))
+        happenings(free.as_mut(), mechanism).for_each(&mut tell);
+        if let Some(approach) = approach.flatten() {
+            tell(Notice::Approach(approach, pose.time));
+        }
+        if has_passed {
+            crossings(solver).for_each(&mut tell);
+        }
+        if goes_on {
+            let values = mechanism.drivers.iter().zip(&pose.drivers);
+            for ((driver, value), beyond) in values.zip(&mut told.beyond) {
+                let excursion = driver.excursion(*value, pose.time, beyond);
+                excursion.map(Notice::Excursion).map(&mut tell);
+            }
+            let inputs = mechanism.inputs.iter().zip(&solution.loads);
+            let inputs = inputs.zip(&mut told.inputs_beyond);
+            for ((input, value), beyond) in inputs.filter(|((input, _), _)| input.given.is_none()) {
+                let excursion = input.excursion(*value, pose.time, beyond);
+                excursion.map(Notice::Excursion).map(&mut tell);
+            }
+            let left = solver.off_pulleys(&mut told.off_pulleys);
+            left.map(Notice::OffPulley).for_each(&mut tell);
+        }
+        if let Some(forces) = solution.forces().filter(|_| *knows_contacts) {
+            let lift_offs = solver.lift_offs(forces, &mut told.lifted);
+            lift_offs.map(Notice::LiftOff).for_each(&mut tell);
+        }
     }
 
-    /// Returns the overlaps and events among the [notices](Self::notices).
+    /// Returns the overlaps and events among the [notices](Self::tell_notices).
     pub fn happenings(&mut self) -> impl Iterator<Item = Notice<'_>> {
         happenings(self.free.as_mut(), self.solver.mechanism())
     }

@@ -7,7 +7,9 @@ use super::rope::LOWERED;
 use crate::common::{assembled, parse, straight_to};
 
 fn sentences(motion: &mut Motion) -> Vec<String> {
-    motion.notices().map(|notice| notice.to_string()).collect()
+    let mut sentences = Vec::new();
+    motion.tell_notices(|notice| sentences.push(notice.to_string()));
+    sentences
 }
 
 #[test]
@@ -108,13 +110,13 @@ fn events_are_told_once_and_only_of_freedoms_that_were_released() {
     // It falls for sqrt(2 h/g), to the tolerance of integration, 1e-8 or less.
     let landing = 1.0 + 0.1_f64.sqrt();
     let mut events = Vec::new();
-    for notice in motion.notices() {
+    motion.tell_notices(|notice| {
         let Notice::Event(event, _) = &notice else {
             panic!("{notice}")
         };
         assert!((event.time - landing).abs() < 1e-7, "{notice}");
         events.push(notice.to_string());
-    }
+    });
     assert!(events[0].contains("at stop `bottom`"), "{events:?}");
     assert!(sentences(&mut motion).is_empty());
 }

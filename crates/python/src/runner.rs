@@ -239,12 +239,10 @@ impl Runner {
 
     /// Adds what is worth knowing and was not told yet, with the events of free motion apart.
     pub(crate) fn tell(&mut self, notices: &mut Vec<String>, events: &mut Vec<Event>) {
-        for notice in self.motion.notices() {
-            match notice {
-                Notice::Event(event, _) => events.push(event),
-                other => notices.push(other.to_string()),
-            }
-        }
+        self.motion.tell_notices(|notice| match notice {
+            Notice::Event(event, _) => events.push(event),
+            other => notices.push(other.to_string()),
+        });
     }
 
     /// Adds the events of free motion that were not told yet.

@@ -147,7 +147,7 @@ impl MechanismModel {
     /// Reports what is worth knowing of the motion and was not told yet.
     pub(super) fn report(&mut self, log: &Logger) {
         self.set_loads();
-        (self.motion.notices()).for_each(|notice| report(&notice, log));
+        self.motion.tell_notices(|notice| report(&notice, log));
     }
 
     /// Reports overlaps and events of the free motion.

@@ -133,12 +133,18 @@ impl SignalledMotion {
 
     /// Notes what is worth knowing.
     fn note(&mut self) {
-        for notice in self.motion.notices() {
+        let Self {
+            motion,
+            events,
+            notices,
+            ..
+        } = self;
+        motion.tell_notices(|notice| {
             if let Notice::Event(event, _) = &notice {
-                self.events.push(*event);
+                events.push(*event);
             }
-            self.notices.push(notice.into());
-        }
+            notices.push(notice.into());
+        });
     }
 
     /// Sets the curves of the drivers that follow signals, from the current time on. Returns
