@@ -94,7 +94,9 @@ impl<'a> Context<'a> {
             let (name, span) = (entry.name(), entry.key.span());
             if self.check_name(entry, noun) && is_taken(name) {
                 let message = format!("the name {} is taken by the language", quoted(name));
-                self.error(code::RESERVED_NAME, span.clone(), message);
+                let help = free_name([(noun, entry); 2], &names);
+                self.error(code::RESERVED_NAME, span.clone(), message)
+                    .suggest(help);
             }
             let Some(first @ (first_noun, first_entry)) = earlier.get(name) else {
                 earlier.insert(name, (noun, entry));

@@ -9,7 +9,7 @@ use crate::mechanism::syntax::Value;
 use super::kind::word_here;
 
 /// Words for keys, each list with the key here.
-const WORDS: [(&[&str], &str); 17] = [
+const WORDS: [(&[&str], &str); 20] = [
     (
         &["cog", "com", "cg", "centre", "center_of_mass", "centroid"],
         "center",
@@ -19,6 +19,15 @@ const WORDS: [(&[&str], &str); 17] = [
     (&["points", "pins", "nodes"], "markers"),
     (&["initial", "init", "position", "angle", "value"], "start"),
     (&["speed", "omega", "rate"], "velocity"),
+    (
+        &["initial_velocity", "initial_speed", "v0", "omega0"],
+        "velocity",
+    ),
+    (
+        &["bounce", "bounciness", "elasticity", "cor"],
+        "restitution",
+    ),
+    (&["spline", "points", "data", "values", "lookup"], "table"),
     (&["mu"], "coefficient"),
     (&["k", "spring", "rate"], "stiffness"),
     (&["d", "damper"], "damping"),
@@ -39,6 +48,10 @@ const SPRING: &str = "forces have a section of their own: `[forces]` with `sprin
                       = \"angle\", markers = [\"ground.O\", \"crank.O\"], stiffness = 5, free = 0 }`";
 const STOP: &str = "limits have a section of their own: `[stops]` with `end = { of = \"MEASURE\", \
                     min = 0, max = \"90*deg\" }`";
+const STOP_OF_FREEDOM: &str = "forces move a freedom, and its limits are stops: `[stops]` with `end = { of = \
+                               \"FREEDOM\", min = 0, max = \"90*deg\" }`";
+const COEFFICIENT: &str = "a coefficient needs a force that presses, which is that of a joint: `joint = \"A\", \
+                           coefficient = 0.1` without a coordinate; along a coordinate friction has a `force`";
 
 /// Returns the key of a table for another word, of the keys that the table knows.
 pub(super) fn key_for(word: &str, known: &[&'static str]) -> Option<&'static str> {
@@ -64,6 +77,26 @@ pub(super) fn help(
             return alone(SPRING);
         }
         "limit" | "limits" | "min" | "max" if is_joint => return alone(STOP),
+        "limit" | "limits" | "min" | "max" if has("velocity") && has("start") => {
+            return alone(STOP_OF_FREEDOM);
+        }
+        "start" | "velocity" if is_joint => {
+            return alone(
+                "a joint has no motion of its own: a coordinate under `[drivers]` is given, one under \
+                 `[freedoms]` moves by the forces; both have a `start`",
+            );
+        }
+        "coefficient" | "mu" if has("force") && has("regularised") => {
+            return Some((COEFFICIENT.to_owned(), vec!["force"]));
+        }
+        "of" | "coordinate" if has("joint") && has("coefficient") => {
+            return alone(
+                "friction in a joint acts where the joint moves: leave out the coordinate",
+            );
+        }
+        "phase" if is_driver => {
+            return alone("a driver has no phase: `start` or `motion` gives its value");
+        }
         "length" if has("estimate") => {
             return alone(
                 "the markers tell how long a body is: `markers = { A = [0, 0], B = [0.1, 0] }`",

@@ -173,6 +173,7 @@ impl<'a> Context<'a> {
         lengths.sort_by(|a, b| a.size.total_cmp(&b.size));
         let gap = |k: &usize| lengths[k - 1].size * GAP <= lengths[*k].size;
         let Some(first) = (1..lengths.len()).find(gap) else {
+            self.warn_of_large_mechanism(&lengths);
             return;
         };
         let (usual, large) = lengths.split_at(first);
@@ -193,6 +194,26 @@ impl<'a> Context<'a> {
                 self.warn(code::LARGE_LENGTH, span.clone(), message)
                     .suggest(format!("{help} `\"{text}*mm\"`"));
             }
+        }
+    }
+
+    /// Warns of a mechanism of bare lengths most of which, sorted by size, are larger than those of
+    /// machines: it looks like one in millimetres.
+    fn warn_of_large_mechanism(&mut self, lengths: &[Length]) {
+        let all_bare = lengths.iter().all(|length| length.bare.is_some());
+        let is_large = lengths
+            .get(lengths.len() / 2)
+            .is_some_and(|middle| middle.size >= LARGE);
+        if let (true, [least, .., most]) = (all_bare && is_large, lengths)
+            && let Some(span) = &most.bare
+        {
+            let text = self.source.text().get(span.clone()).unwrap_or_default();
+            let [least, size] = [least, most].map(|length| shown(length.size));
+            let message = format!("the mechanism has lengths from {least} m to {size} m");
+            self.warn(code::LARGE_LENGTH, span.clone(), message)
+                .suggest(format!(
+                    "lengths are in metres: millimetres are written `\"{text}*mm\"`"
+                ));
         }
     }
 

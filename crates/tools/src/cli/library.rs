@@ -10,7 +10,7 @@ use super::commands::check::json::report_on;
 use super::commands::export::{pack, platform, version};
 use super::commands::new::templates;
 use super::commands::range;
-use super::given::conditions;
+use super::given::assigning;
 use super::given::input::Input;
 use super::given::settings::check_limits;
 use super::pages::documentation::show;
@@ -174,5 +174,5 @@ pub fn check_parameter(
 /// Says that a name is unknown, with the known name that may be meant.
 #[must_use]
 pub fn unknown_name(kind: &str, name: &str, names: &[&str]) -> String {
-    conditions::unknown_name(kind, name, names)
+    assigning::unknown_name(kind, name, names)
 }

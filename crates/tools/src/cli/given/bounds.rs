@@ -2,7 +2,8 @@
 
 use clap::Args;
 
-use super::conditions::{Conditions, unknown};
+use super::assigning::unknown;
+use super::conditions::Conditions;
 use crate::cli::told::error::Error;
 use biela::mechanism::{DriverId, Mechanism, shown};
 

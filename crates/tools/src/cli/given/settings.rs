@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::conditions::{Assigning, refuse, warn_of_degrees};
+use super::assigning::{Assigning, refuse, warn_of_degrees};
 use super::input::{Input, has_errors, show_diagnostics};
 use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;

@@ -20,11 +20,14 @@ use crate::drawing::{Scene, Sheet, png};
 use biela::fmi::{Causality, Document, Kind, Quantity, Variability, Variable, Version, variables};
 use biela::kinematics::{End, Range, RangeSettings, Solver};
 use biela::mechanism::{
-    DriverId, DriverSource, Mechanism, PrescribedMotion as Prescribed, Source, Unit,
+    Driver, DriverId, DriverSource, Mechanism, PrescribedMotion as Prescribed, Source, Unit,
     Variable as Of, rounded,
 };
 
 const MAIN: &str = include_str!("documentation.html");
+/// Behaviour of drivers that are inputs, and of freedoms.
+const DRIVEN: &str = include_str!("documentation_driven.html");
+const FREE: &str = include_str!("documentation_free.html");
 const STYLE: &str = include_str!("documentation.css");
 /// The licences of what is inside the runtime library.
 const LICENSES: &[u8] = include_bytes!("../../../../runtime/licenses.txt");
@@ -293,6 +296,31 @@ fn page(
     } else {
         ""
     };
+    let has_inputs = mechanism.drivers.iter().any(Driver::is_given);
+    let moved_by = match (has_inputs, mechanism.has_freedoms()) {
+        (true, false) => "the drivers are its inputs",
+        (true, true) => "the drivers are its inputs, and the forces move its freedoms",
+        (false, true) => "the forces move it from the starts of its freedoms",
+        (false, false) => "its drivers follow the motions of the file",
+    };
+    let interface = format!(
+        ": {moved_by}; position, velocity and acceleration of the bodies are outputs, exact to {} at every \
+         communication point.",
+        match mechanism.has_freedoms() {
+            true => "the tolerance",
+            false => "rounding",
+        }
+    );
+    let driven = fill(
+        DRIVEN,
+        &[
+            ("failure", FAILURE[version as usize]),
+            ("lag", LAG[version as usize]),
+        ],
+    );
+    let behaviour = [(has_inputs, &*driven), (mechanism.has_freedoms(), FREE)];
+    let behaviour = behaviour.into_iter().filter(|(applies, _)| *applies);
+    let behaviour: String = behaviour.map(|(_, text)| text).collect();
     let main = fill(
         MAIN,
         &[
@@ -304,8 +332,8 @@ fn page(
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),
             ("standard", &version.to_string()),
-            ("failure", FAILURE[version as usize]),
-            ("lag", LAG[version as usize]),
+            ("interface", &interface),
+            ("behaviour", &behaviour),
         ],
     );
     page_with(&mechanism.name, &mechanism.description, &main, STYLE)
@@ -332,13 +360,21 @@ pub(in crate::cli) fn about(mechanism: &Mechanism) -> String {
     format!("<dl class=\"about\">{html}</dl>")
 }
 
+/// Returns the tables of drivers and of freedoms, each with its heading.
 fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
-    let rows = mechanism.drivers.iter().zip(ranges).enumerate();
-    let rows = rows.map(|(index, (driver, range))| {
+    let mut rows = [Vec::new(), Vec::new()];
+    for (index, (driver, range)) in mechanism.drivers.iter().zip(ranges).enumerate() {
         let kind = driver.coordinate.kind;
         let value = |value: f64| with_unit(kind, value);
         let start = match driver.source {
-            DriverSource::Input { start } | DriverSource::Free { start, .. } => value(start),
+            DriverSource::Input { start } => value(start),
+            DriverSource::Free {
+                start, velocity, ..
+            } if velocity != 0.0 => {
+                let unit = kind.units()[1].suffix();
+                format!("{}, {}{unit}", value(start), rounded(velocity, 12))
+            }
+            DriverSource::Free { start, .. } => value(start),
             DriverSource::Motion(_) => String::new(),
         };
         let limits = match range {
@@ -355,9 +391,24 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
                 }
             },
         };
-        [driver.name.clone(), start, limits.replace('`', "")]
+        rows[usize::from(driver.is_free())].push([
+            driver.name.clone(),
+            start,
+            limits.replace('`', ""),
+        ]);
+    }
+    let kinds = [
+        ("Drivers", ["Driver", "Start", "Range, other drivers held"]),
+        (
+            "Freedoms",
+            ["Freedom", "Start", "Range, all other coordinates held"],
+        ),
+    ];
+    let shown = kinds.iter().zip(rows).filter(|(_, rows)| !rows.is_empty());
+    let tables = shown.map(|((heading, header), rows)| {
+        format!("<h2>{heading}</h2>\n{}\n", table(header, rows.into_iter()))
     });
-    table(&["Driver", "Start", "Range, other drivers held"], rows)
+    tables.collect()
 }
 
 /// Returns the table of parameters in SI units, then the folded table of settings.
@@ -447,7 +498,11 @@ fn outputs(variables: &[Variable<Quantity>]) -> String {
     let told = variables.iter().filter(|variable| {
         matches!(
             variable.causality,
-            Causality::Input | Causality::Output | Causality::Local
+            Causality::Input
+                | Causality::Output
+                | Causality::StartedOutput
+                | Causality::State
+                | Causality::Local
         )
     });
     let mut owners: Vec<(&str, Vec<&Variable<Quantity>>)> = Vec::new();
@@ -485,7 +540,8 @@ fn row(variable: &Variable<Quantity>) -> [String; 4] {
     };
     let causality = match variable.causality {
         Causality::Input => "input",
-        Causality::Output => "output",
+        Causality::Output | Causality::StartedOutput => "output",
+        Causality::State => "state",
         _ => "local",
     };
     [

@@ -1,6 +1,6 @@
 //! Choices among the columns of a run.
 
-use crate::cli::given::conditions::unknown;
+use crate::cli::given::assigning::unknown;
 use crate::cli::told::error::Error;
 use biela::kinematics::ForceQuantity;
 pub(in crate::cli) use biela::kinematics::{Output, OutputSource as Source};

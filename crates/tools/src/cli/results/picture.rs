@@ -39,10 +39,16 @@ impl Format {
         match &*extension(path) {
             "svg" => Ok(Self::Svg),
             "png" => Ok(Self::Png),
-            _ => Err(Error::Usage(format!(
-                "`{}` has neither the extension .svg nor .png",
-                path.display()
-            ))),
+            extension => {
+                let film = match extension {
+                    "gif" => "; `biela run --animate` writes pictures that move",
+                    _ => "",
+                };
+                Err(Error::Usage(format!(
+                    "`{}` has neither the extension .svg nor .png{film}",
+                    path.display()
+                )))
+            }
         }
     }
 
