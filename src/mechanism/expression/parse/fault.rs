@@ -23,12 +23,8 @@ impl Parser<'_> {
             self.token.span(),
             format!("expected an operator, found {}", quoted(found)),
         );
-        let follows = &self.text[self.token.span().end..];
-        if found == "=" && follows.starts_with('=') || matches!(found, "<" | ">" | "!") {
-            return error.help(
-                "an expression has no comparisons: choose by `min`, `max` and `sign`, as `max(sign(t - 1), \
-                 0)`, which is 1 after t = 1 and 0 before",
-            );
+        if found == "=" && self.text[self.token.span().end..].starts_with('=') {
+            return error.help(CHOICE);
         }
         if found == "=" {
             return error.help("only the `equation` of a coupling has a `=`");

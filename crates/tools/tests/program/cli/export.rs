@@ -282,3 +282,28 @@ fn platforms_are_listed_and_narrow_the_export() {
         "{message}"
     );
 }
+
+/// Value and velocity of a freedom are states; nothing of it is an input.
+#[test]
+fn the_documentation_of_a_free_mechanism_tells_freedoms_and_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("free.fmu");
+    let name = path.to_str().unwrap();
+    biela(&["export", "mechanisms/pendulum_free.toml", "-o", name]).success();
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(&path).unwrap()).unwrap();
+    let mut page = String::new();
+    let mut entry = archive.by_name("documentation/index.html").unwrap();
+    entry.read_to_string(&mut page).unwrap();
+    for part in [
+        "the forces move it from the starts of its freedoms",
+        "<h2>Freedoms</h2>",
+        ">swing.position</td><td data-what=\"Causality\">state<",
+        ">swing.velocity</td><td data-what=\"Causality\">state<",
+        "<code>logEvents</code>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    for part in ["<h2>Drivers</h2>", "are its inputs", "input derivatives"] {
+        assert!(!page.contains(part), "{part}");
+    }
+}
