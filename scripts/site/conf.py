@@ -68,9 +68,9 @@ def mechanisms(text: str) -> str:
         links = f"[{name}.toml]({name}.toml)"
         if (GALLERY / f"{name}.html").is_file():
             links += f', <a href="../gallery/{name}.html">moved by hand</a>'
-        return f"## {name}\n\n{links}"
+        return f"### {name}\n\n{links}"
 
-    text = re.sub(r"^## \[(\w+)\]\(.*$", replaced, text, flags=re.MULTILINE)
+    text = re.sub(r"^### \[(\w+)\]\(.*$", replaced, text, flags=re.MULTILINE)
     if not (GALLERY / "index.html").is_file():
         return text
     title, _, rest = text.partition("\n")

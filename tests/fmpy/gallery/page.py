@@ -27,6 +27,13 @@ their kind. They are rounded up and differ a little from machine to machine.
 Made by `make refresh`; do not edit.
 """
 
+LINKAGES = "Linkages"
+CAMS = "Cams and curves"
+GEARS = "Gears, belts, ropes and couplings"
+FREE = "Free motion"
+CONTACT = "Stops, friction and contact"
+GROUPS = (LINKAGES, CAMS, GEARS, FREE, CONTACT)
+
 
 def draw(name: str) -> None:
     """Draws the picture of a mechanism."""
@@ -45,17 +52,46 @@ def write(rows: list[Row]) -> None:
             picture.unlink()
     for row in rows:
         draw(row.name)
-    text = "\n".join([HEAD, *map(section, rows)])
+    text = "\n".join([HEAD, *sections([(row.name, section(row)) for row in rows])])
     (FOLDER / "README.md").write_text(text, encoding="utf-8", newline="\n")
+
+
+def sections(of_mechanisms: list[tuple[str, str]]) -> list[str]:
+    """Returns the sections of mechanisms, given with their names, in groups with headings."""
+    groups = {heading: [] for heading in GROUPS}
+    for name, text in of_mechanisms:
+        groups[group(read(name))].append(text)
+    return [part for heading, texts in groups.items() if texts for part in (f"## {heading}\n", *texts)]
+
+
+def read(name: str) -> dict:
+    """Reads a mechanism file."""
+    return tomllib.loads(mechanism_file(name).read_text(encoding="utf-8"))
+
+
+def group(mechanism: dict) -> str:
+    """Returns the heading of the group that a mechanism belongs to."""
+    joints = mechanism.get("joints", {}).values()
+    kinds = {joint["type"] for joint in joints}
+    opens = any({"unilateral", "backlash"} & joint.keys() for joint in joints)
+    if opens or {"stops", "friction"} & mechanism.keys():
+        return CONTACT
+    if "freedoms" in mechanism:
+        return FREE
+    if kinds & {"cam", "curve", "geneva"}:
+        return CAMS
+    if kinds & {"gear", "belt", "rack_and_pinion", "rolling", "rope", "coupling"}:
+        return GEARS
+    return LINKAGES
 
 
 def section(row: Row) -> str:
     """Returns the section of a mechanism."""
-    mechanism = tomllib.loads(mechanism_file(row.name).read_text(encoding="utf-8"))
+    mechanism = read(row.name)
     description = mechanism["description"]
     errors = " · ".join(f"{order} {rounded_up(row.errors.get(order))}" for order in ORDERS)
     return f"""\
-## [{row.name}]({row.name}.toml)
+### [{row.name}]({row.name}.toml)
 
 {description}.
 
