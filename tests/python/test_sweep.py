@@ -57,6 +57,20 @@ def test_arrays_of_several_dimensions_keep_their_shape(four_bar):
     assert_array_equal(sweep["rocker.phi"][1, 0], own["rocker.phi"])
 
 
+def test_outer_sweeps_have_an_axis_per_array(four_bar):
+    parameters = {"crank_length": [0.09, 0.1], "base": 0.4, "coupler_length": [0.3, 0.31, 0.32]}
+    motion = {"drive": {"crank_angle": [1.0, 1.1]}, "variables": ["rocker.phi"]}
+    sweep = four_bar.sweep(parameters, outer=True, **motion)
+    assert sweep.shape == (2, 3)
+    crank, coupler = np.meshgrid([0.09, 0.1], [0.3, 0.31, 0.32], indexing="ij")
+    expected = four_bar.sweep({"crank_length": crank, "base": 0.4, "coupler_length": coupler}, **motion)
+    assert np.array_equal(sweep["rocker.phi"], expected["rocker.phi"])
+    assert len(np.unique(sweep["rocker.phi"])) == 12
+    assert np.array_equal(sweep.parameters["crank_length"], crank)
+    single = four_bar.sweep({"base": 0.4}, outer=True, **motion)
+    assert single.shape == ()
+
+
 def test_refused_variants_have_their_reasons(four_bar):
     base = [0.4, 0.5, 5.0, -1.0]
     sweep = four_bar.sweep({"base": base}, drive={"crank_angle": THETA}, variables="rocker.phi")

@@ -313,13 +313,16 @@ class Mechanism:
         variables: Sequence[str] | None = None,
         progress: bool = False,
         inputs: Drive | None = None,
+        outer: bool = False,
     ) -> Sweep:
         """Runs a variant of the mechanism per entry of the arrays of `parameters`, on all cores.
 
-        Arrays of any one shape, which single values fit. Each variant starts from the file's own
+        Arrays of any one shape, which single values fit; with `outer` each value of one with each of
+        all others, an axis per array in the order of `parameters`, none for a single value. Each variant starts from the file's own
         pose and is followed on its continuous motion, as in `run`. A variant that does not
         assemble, or stops, is no error: `reason` tells why, and its values are not numbers from
-        there on. `parameters` may have starts of freedoms too, such as `swing.velocity`. `progress` shows a bar (tqdm).
+        there on. `parameters` may have starts of freedoms too, such as `swing.velocity`. `progress` shows
+        a bar (tqdm).
 
         The values do not depend on the number of cores or on the order of the variants.
 
@@ -340,6 +343,8 @@ class Mechanism:
         parameters = mapping("parameters", parameters)
         fixed = {n: v for n, v in parameters.items() if isinstance(v, str)}
         arrays = {n: numbers("parameters", v, n) for n, v in parameters.items() if n not in fixed}
+        if outer:
+            arrays = dict(zip(arrays, _outer(arrays.values())))
         try:
             series = dict(zip(arrays, np.broadcast_arrays(*arrays.values())))
         except ValueError:
@@ -621,6 +626,17 @@ def _pose_of(mode: Mode, body: str) -> NDArray:
     if pose.shape != (3,) or not np.isfinite(pose).all():
         raise UsageError(f"posed: expected three finite numbers as `{body}`; found {mode.poses[body]!r}")
     return pose
+
+
+def _outer(arrays: Iterable[NDArray]) -> list[NDArray]:
+    """Gives each array axes of its own, in order."""
+    arrays = list(arrays)
+    after = sum(array.ndim for array in arrays)
+    spread = []
+    for array in arrays:
+        after -= array.ndim
+        spread.append(array.reshape(array.shape + (1,) * after))
+    return spread
 
 
 def _progress_bar(count: int):
