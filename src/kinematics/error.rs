@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::origin::Origin;
 use super::stop_limit::StopLimit;
-use crate::mechanism::{CoordinateKind, ProfileError, show_time, shown, shown_apart};
+use crate::mechanism::{CoordinateKind, ProfileError, ShapeFault, show_time, shown, shown_apart};
 
 /// A call of the kinematics that could not do its work.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -78,6 +78,9 @@ pub enum Error {
         /// The largest value \[m or rad\].
         max: f64,
     },
+    /// A shape has no proper outline for the parameter values in force.
+    #[error("{0}")]
+    Shape(Box<ShapeFault>),
     /// A pose at which a motion is to start is beyond a stop, or beyond the end of a curve.
     #[error("the start pose is {}", .limit.describe_beyond(*.value))]
     BeyondStop {

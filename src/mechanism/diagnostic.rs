@@ -147,6 +147,7 @@ codes! {
     PARAMETER_CYCLE = "parameter-cycle",
     RESERVED_NAME = "reserved-name",
     SAME_BODY = "same-body",
+    SHAPE = "shape",
     STOP_COORDINATE = "stop-coordinate",
     SYNTAX = "syntax",
     TABLE_FILE = "table-file",

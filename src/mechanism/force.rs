@@ -2,7 +2,8 @@
 
 use super::friction::FrictionLaw;
 use super::{
-    Coordinate, Expression, MarkerId, Mechanism, Number, Order, ParameterId, Signal, Unit, Variable,
+    Body, Coordinate, Expression, MarkerId, Mechanism, Number, Order, ParameterId, Signal, Unit,
+    Variable,
 };
 
 /// Force on a mechanism.
@@ -506,7 +507,7 @@ impl Mechanism {
     /// Returns whether it has dynamics: a body with mass, or a force.
     #[must_use]
     pub fn has_dynamics(&self) -> bool {
-        !self.forces.is_empty() || self.bodies.iter().any(|body| body.mass.is_some())
+        !self.forces.is_empty() || self.bodies.iter().any(Body::has_mass)
     }
 }
 

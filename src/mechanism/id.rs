@@ -1,4 +1,4 @@
-//! Typed indices of bodies, markers, drivers and parameters.
+//! Typed indices of bodies, markers, shapes, drivers and parameters.
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -27,6 +27,10 @@ id!(
 id!(
     /// Driver: index into [`Mechanism::drivers`](super::Mechanism::drivers).
     DriverId
+);
+id!(
+    /// Shape of a body or of ground: index into [`Mechanism::shapes`](super::Mechanism::shapes).
+    ShapeId
 );
 id!(
     /// Parameter: index into [`Mechanism::parameters`](super::Mechanism::parameters).

@@ -18,6 +18,7 @@
 //! | `force_quantity`, `reaction` | [`ForceQuantity`]: forces, energies and inertias, and their names |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `play` | [`Play`]: joints that open |
+//! | `shape` | [`Shape`]: outlines of bodies and of ground, and what they weigh |
 //! | `stop` | [`Stop`]: limits of a coordinate |
 //! | `excursion` | [`Excursion`]: a driver or an input beyond its limits |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
@@ -53,6 +54,7 @@ mod reaction;
 mod read;
 mod rope;
 mod setting;
+mod shape;
 mod signal;
 mod source;
 mod spline;
@@ -83,7 +85,7 @@ pub use force::{
 };
 pub use force_quantity::ForceQuantity;
 pub use friction::{Bearing, BearingShape, FrictionLaw};
-pub use id::{BodyId, DriverId, MarkerId, ParameterId};
+pub use id::{BodyId, DriverId, MarkerId, ParameterId, ShapeId};
 pub use input::{Input, LoadInput, LoadTarget};
 pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};
 pub use motion::{Law, MotionInForce, PrescribedMotion, not_finite};
@@ -98,6 +100,10 @@ pub use reaction::{NamedForce, Reported};
 pub(crate) use rope::MOST_BODIES;
 pub use rope::{Pulley, PulleySide, Rope, RopePoint};
 pub use setting::{Extrapolation, RateSource};
+pub use shape::{
+    OutlineCorner, Piece, Section, Shape, ShapeFault, ShapeFaultKind,
+    ShapeForm, Weight,
+};
 pub(crate) use signal::SUFFIXES;
 pub use signal::{COMPONENTS, Order, Signal};
 pub use source::{Position, Source, Span};
@@ -142,6 +148,8 @@ pub struct Mechanism {
     pub bodies: Vec<Body>,
     /// All markers: those of ground first, then body by body.
     pub markers: Vec<Marker>,
+    /// All shapes: those of ground first, then body by body.
+    pub shapes: Vec<Shape>,
     /// Joints.
     pub joints: Vec<Joint>,
     /// Coordinates held at values.
@@ -184,6 +192,8 @@ pub struct Body {
     pub inertia: Option<Expression>,
     /// Centre of mass in the body's frame \[m\].
     pub center: Option<[Expression; 2]>,
+    /// Whether shapes with a thickness and a density give it mass, centre and inertia instead.
+    pub is_weighed: bool,
 }
 
 /// Frame fixed on a body or on ground: a point and a direction.

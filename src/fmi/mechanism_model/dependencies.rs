@@ -8,7 +8,7 @@ use crate::fmi::model_description::DependencyKind;
 use crate::fmi::variable::{Causality, Variable, place, value_reference};
 use crate::kinematics::{Dependencies, ForceQuantity, OutputSource, Structure};
 use crate::mechanism::{
-    Coordinate, DriverId, Expression, Load, Mechanism, Order, Signal, Variable as Of,
+    BodyId, Coordinate, DriverId, Expression, Load, Mechanism, Order, Signal, Variable as Of,
 };
 
 /// Kinds of dependency by value reference.
@@ -381,9 +381,8 @@ impl<'a> DependencyTable<'a> {
         for column in 0..3 * mechanism.bodies.len() {
             origins.extend(structure.dependencies(column));
         }
-        for body in &mechanism.bodies {
-            let center = body.center.iter().flatten();
-            for expression in body.mass.iter().chain(&body.inertia).chain(center) {
+        for (index, body) in mechanism.bodies.iter().enumerate() {
+            for expression in mechanism.numbers_of_mass(BodyId(index)) {
                 origins.add_expression(mechanism, expression);
             }
             // Points of forces and reactions.

@@ -3,7 +3,7 @@
 use super::results::DriverForces;
 use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::error::Error;
-use crate::mechanism::{Expression, Mechanism, Number, ParameterId};
+use crate::mechanism::{BodyId, Expression, Mechanism, Number, ParameterId};
 
 /// The masses of a mechanism with the parameters in force.
 #[derive(Clone, Debug)]
@@ -62,19 +62,14 @@ impl<N: Number> Masses<N> {
         parameter: &impl Fn(ParameterId) -> N,
     ) {
         let value = |expression: &Expression| expression.evaluate(parameter, N::constant(0.0));
-        let optional =
-            |expression: &Option<Expression>| expression.as_ref().map_or(N::constant(0.0), value);
         self.gravity = mechanism.simulation.gravity.each_ref().map(value);
-        for (of_body, body) in self.bodies.iter_mut().zip(&mechanism.bodies) {
-            // Without a mass, inertia and centre have no effect.
-            let Some(mass) = &body.mass else { continue };
-            of_body.mass = value(mass);
-            of_body.inertia = optional(&body.inertia);
-            let center = body
-                .center
-                .as_ref()
-                .map(|center| center.each_ref().map(value));
-            of_body.center = center.unwrap_or([N::constant(0.0); 2]);
+        for (of_body, id) in self.bodies.iter_mut().zip((0..).map(BodyId)) {
+            let Some(weight) = mechanism.weight(id, parameter) else {
+                continue;
+            };
+            of_body.mass = weight.mass;
+            of_body.inertia = weight.inertia;
+            of_body.center = weight.center;
         }
     }
 }
@@ -137,7 +132,7 @@ impl Masses<f64> {
             });
         }
         let bodies = self.bodies.iter().zip(&mechanism.bodies);
-        for (of_body, body) in bodies.filter(|(_, body)| body.mass.is_some()) {
+        for (of_body, body) in bodies.filter(|(_, body)| body.has_mass()) {
             let name = &body.name;
             let values = [of_body.mass, of_body.inertia]
                 .into_iter()

@@ -23,7 +23,7 @@ use crate::kinematics::singular::{Kind, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
 use crate::mechanism::{
-    DriverId, Dual, ForceQuantity, Load, Mechanism, Number, ParameterId, Reported,
+    BodyId, DriverId, Dual, ForceQuantity, Load, Mechanism, Number, ParameterId, Reported,
 };
 
 /// The derivatives of all forces along a direction.
@@ -415,10 +415,10 @@ impl Forces {
         if is_missing(&masses.gravity) {
             return Some(along.no_derivative("`gravity`".to_owned(), simulation.gravity.iter()));
         }
-        let mut of_bodies = masses.bodies.iter().zip(bodies);
-        if let Some((_, body)) = of_bodies.find(|(mass, _)| is_missing(&mass.numbers())) {
-            let numbers = [&body.mass, &body.inertia].into_iter().flatten();
-            let numbers = numbers.chain(body.center.iter().flatten());
+        let mut of_bodies = masses.bodies.iter().zip(bodies).zip((0..).map(BodyId));
+        if let Some(((_, body), id)) = of_bodies.find(|((mass, _), _)| is_missing(&mass.numbers()))
+        {
+            let numbers = self.mechanism.numbers_of_mass(id);
             let what = format!("the mass, inertia or center of body `{}`", body.name);
             return Some(along.no_derivative(what, numbers));
         }

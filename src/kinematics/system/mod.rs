@@ -388,7 +388,7 @@ impl System {
     /// # Errors
     ///
     /// [`Error::Limit`] if a derived parameter is outside its limits, [`Error::StopLimits`] where
-    /// those of a stop leave no room, [`Error::NotFinite`] where an expression leaves its domain,
+    /// those of a stop leave no room, [`Error::Shape`] for a shape without an outline, [`Error::NotFinite`] where an expression leaves its domain,
     /// [`Error::NotPositive`] where a distance is held at a value that is not positive.
     /// Configuration and targets are then without use until valid values are set.
     pub fn set_parameters(
@@ -400,6 +400,9 @@ impl System {
         self.check_derived(parameters)?;
         self.check_stops(parameters)?;
         at.set_parameters(&self.mechanism, &self.joint_parts.coefficients, parameters)?;
+        if let Some(fault) = self.mechanism.shape_fault(parameters) {
+            return Err(Error::Shape(Box::new(fault)));
+        }
         for (equation, constant) in self.equations.iter().zip(&mut targets.constants) {
             let Target::Constant(expression) = &equation.target else {
                 continue;

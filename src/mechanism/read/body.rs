@@ -1,24 +1,30 @@
 //! Ground, the moving bodies and their markers.
 
+use std::marker::PhantomData;
+
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::NameTable;
 use crate::mechanism::wording::quoted;
-use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Unit};
+use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Shape, Unit};
 
 use super::context::Context;
-use super::kind::{Array, Entry, Fields, Item, Kind, Text, schema};
+use super::kind::{Array, Entry, Fields, Item, Kind, Named, Text, schema};
 use super::kind::{Described, NAME};
 use super::number::{ANGLE, LENGTH, NUMBER, Number, POINT, Quantity};
+use super::shape::{AnyShape, DENSITY, THICKNESS};
 use super::table::{Field, Keys, table};
 
 /// Names of a body's own quantities, which no marker may have.
-const BODY_QUANTITIES: [&str; 9] = ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
+pub(super) const BODY_QUANTITIES: [&str; 9] =
+    ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
 
 table! {
     /// The body that never moves; its frame is the global one.
     struct GroundKeys<'a> {
         /// Frames fixed on ground.
         markers: Vec<NamedFrame<'a>> = Frames,
+        /// Outlines of ground.
+        shapes: Vec<Entry<'a>> = Named(PhantomData::<AnyShape>),
     }
 
     /// A rigid body that moves.
@@ -33,6 +39,12 @@ table! {
         inertia: Quantity = NUMBER.in_unit(Unit::KILOGRAM_METRE_SQUARED).not_negative(),
         /// Centre of mass in the body's frame.
         center: [Quantity; 2] = POINT,
+        /// Outlines of the body.
+        shapes: Vec<Entry<'a>> = Named(PhantomData::<AnyShape>),
+        /// Thickness of its shapes.
+        thickness: Quantity = THICKNESS,
+        /// Density of its shapes [kg/m3], which gives them mass.
+        density: Quantity = DENSITY,
         /// Description in one line.
         description: String = Text,
     }
@@ -121,7 +133,7 @@ impl<'a> Context<'a> {
         &mut self,
         ground: &Field<Fields<'a>>,
         entries: &Field<Vec<Entry<'a>>>,
-    ) -> (Vec<Body>, Vec<Marker>) {
+    ) -> (Vec<Body>, Vec<Marker>, Vec<Shape>) {
         // A value that is no table has been reported.
         let readable = entries.key.is_none() || entries.value.is_some();
         if readable && entries.items().is_empty() {
@@ -130,14 +142,17 @@ impl<'a> Context<'a> {
                 .suggest("add one: `[bodies.crank]`");
         }
         let mut markers = Vec::new();
-        let ground = match &ground.value {
-            Some(fields) => {
-                let mut keys = self.table::<GroundKeys<'a>>(fields);
-                frames::<GroundKeys<'a>>(&keys.owner, &mut keys.markers)
-            }
+        let mut shapes = Vec::new();
+        let mut keys = (ground.value.as_ref()).map(|fields| self.table::<GroundKeys<'a>>(fields));
+        let ground = match &mut keys {
+            Some(keys) => frames::<GroundKeys<'a>>(&keys.owner, &mut keys.markers),
             None => ground.key.is_none().then(Vec::new),
         };
         self.declare_markers(None, ground, &mut markers);
+        match &keys {
+            Some(keys) => self.shapes(None, &keys.shapes, &[None, None], &mut shapes),
+            None => self.shape_names.push(None),
+        }
         let mut bodies = Vec::new();
         for (index, entry) in entries.items().iter().enumerate() {
             let first = self.carriers.len();
@@ -146,9 +161,12 @@ impl<'a> Context<'a> {
                 .and_then(|keys| frames::<BodyKeys<'a>>(&keys.owner, &mut keys.markers));
             self.declare_markers(Some(BodyId(index)), frames, &mut markers);
             let ids = (first..self.carriers.len()).map(MarkerId).collect();
-            bodies.extend(keys.map(|keys| self.body(*entry, keys, ids)));
+            match keys {
+                Some(keys) => bodies.push(self.body(*entry, keys, ids, &mut shapes)),
+                None => self.shape_names.push(None),
+            }
         }
-        (bodies, markers)
+        (bodies, markers, shapes)
     }
 
     /// Reads a marker given by polar coordinates.
@@ -164,10 +182,24 @@ impl<'a> Context<'a> {
         Some([x, y, Expression::constant(0.0)])
     }
 
-    fn body(&mut self, entry: Entry<'a>, keys: BodyKeys<'a>, markers: Vec<MarkerId>) -> Body {
+    fn body(
+        &mut self,
+        entry: Entry<'a>,
+        keys: BodyKeys<'a>,
+        markers: Vec<MarkerId>,
+        shapes: &mut Vec<Shape>,
+    ) -> Body {
+        let id = BodyId(self.shape_names.len() - 1);
+        let expression =
+            |field: &Field<Quantity>| field.value.as_ref().map(|size| size.expression.clone());
+        let plate = [&keys.thickness, &keys.density].map(expression);
+        let first = shapes.len();
+        self.shapes(Some(id), &keys.shapes, &plate, shapes);
+        let is_weighed = shapes[first..].iter().any(|shape| shape.weight.is_some());
+        self.check_weight(&keys, is_weighed);
         let of_mass = [("inertia", &keys.inertia.key), ("center", &keys.center.key)];
         for (name, key) in of_mass {
-            if let (None, Some(span)) = (&keys.mass.key, key) {
+            if let (None, Some(span), false) = (&keys.mass.key, key, is_weighed) {
                 let subject = &keys.owner.subject;
                 let message = format!("`{name}` of {subject} has no effect without `mass`");
                 self.warn(code::MISSING_MASS, span.clone(), message);
@@ -182,6 +214,34 @@ impl<'a> Context<'a> {
             mass: keys.mass.expression(),
             inertia: keys.inertia.expression(),
             center: keys.center.expressions(),
+            is_weighed,
+        }
+    }
+
+    /// Reports masses that are given twice, and plates without an outline.
+    fn check_weight(&mut self, keys: &BodyKeys<'a>, is_weighed: bool) {
+        let subject = &keys.owner.subject;
+        let given = [
+            ("mass", &keys.mass.key),
+            ("inertia", &keys.inertia.key),
+            ("center", &keys.center.key),
+        ];
+        for (name, key) in given {
+            if let (Some(span), true) = (key, is_weighed) {
+                let message = format!("{subject} has both `{name}` and shapes with a `density`");
+                self.error(code::ILLEGAL_VALUE, span.clone(), message)
+                    .suggest("leave out one: mass, center and inertia follow from the shapes");
+            }
+        }
+        let plate = [
+            ("thickness", &keys.thickness.key),
+            ("density", &keys.density.key),
+        ];
+        for (name, key) in plate {
+            if let (Some(span), true) = (key, keys.shapes.items().is_empty()) {
+                let message = format!("`{name}` of {subject} has no effect without `shapes`");
+                self.warn(code::MISSING_MASS, span.clone(), message);
+            }
         }
     }
 

@@ -11,8 +11,8 @@ use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{
-    BodyId, Coordinate, Diagnostic, Dimension, Label, MarkerId, ParameterId, Severity, Source,
-    Span, TableFile,
+    BodyId, Coordinate, Diagnostic, Dimension, Label, MarkerId, ParameterId, Severity, ShapeId,
+    Source, Span, TableFile,
 };
 
 /// Most problems that are shown; the others are counted. A file of garbage would make a million.
@@ -63,6 +63,10 @@ pub(super) struct Context<'a> {
     pub(super) markers: Vec<Option<NameTable<'a, MarkerId>>>,
     /// Body of each marker, `None` for ground.
     pub(super) carriers: Vec<Option<BodyId>>,
+    /// Shapes of ground, then of each body; `None` where they cannot be read.
+    pub(super) shape_names: Vec<Option<NameTable<'a, ShapeId>>>,
+    /// Place of each shape, and whether it could be read.
+    pub(super) shape_places: Vec<(Span, bool)>,
     /// Name of the first body, or `ground`, that has a marker of this name.
     pub(super) owners: HashMap<&'a str, &'a str>,
     /// Inputs by their places.
@@ -108,6 +112,8 @@ impl<'a> Context<'a> {
             holder_counts: [0; 2],
             markers: Vec::new(),
             carriers: Vec::new(),
+            shape_names: Vec::new(),
+            shape_places: Vec::new(),
             owners: HashMap::new(),
             inputs: NameTable::new(),
             inputs_used: Vec::new(),

@@ -2,7 +2,7 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::wording::quoted;
-use crate::mechanism::{CoordinateKind, Driver, DriverSource, Mechanism};
+use crate::mechanism::{Body, CoordinateKind, Driver, DriverSource, Mechanism};
 
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
@@ -25,12 +25,13 @@ table! {
 impl<'a> Context<'a> {
     /// Reports freedoms of a mechanism without masses.
     pub(super) fn check_freedoms(&mut self, mechanism: &Mechanism, freedoms: &[Entry<'a>]) {
-        let has_mass = mechanism.bodies.iter().any(|body| body.mass.is_some());
+        let has_mass = mechanism.bodies.iter().any(Body::has_mass);
         for entry in freedoms.iter().filter(|_| !has_mass) {
             let name = quoted(entry.name());
             let message = format!("the freedom {name} has nothing to move: no body has a mass");
             self.error(code::MISSING_MASS, entry.key.span(), message)
-                .suggest("give the bodies `mass`, `center` and `inertia`");
+                .suggest("give the bodies `mass`, `center` and `inertia`, or `shapes` with a `thickness` and a \
+                     `density`");
         }
     }
 

@@ -38,6 +38,7 @@ mod points;
 mod reference;
 mod root;
 mod settings;
+mod shape;
 mod stop;
 mod table;
 mod usage;
@@ -130,7 +131,7 @@ impl<'a> Context<'a> {
         let simulation = self.simulation(&root.simulation.or_empty(), has_freedoms);
         let inputs = self.each(&root.inputs, Self::input);
         self.input_starts = inputs.iter().map(|input| input.start).collect();
-        let (bodies, markers) = self.bodies(&root.ground, &root.bodies);
+        let (bodies, markers, shapes) = self.bodies(&root.ground, &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let mut drivers = self.each(&root.drivers, driver);
         drivers.extend(self.each(&root.freedoms, Self::freedom));
@@ -169,6 +170,7 @@ impl<'a> Context<'a> {
             inputs,
             bodies,
             markers,
+            shapes,
             joints,
             constraints: self.each(&root.constraints, Self::constraint),
             drivers,
@@ -183,6 +185,7 @@ impl<'a> Context<'a> {
         };
         if !self.failed {
             mechanism.start_at_estimates();
+            self.check_shapes(&mechanism);
         }
         mechanism.derived = self.derived(root.measures.items(), &mechanism);
         if !self.failed {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::ranges::{DriverRange, driver_speeds};
 use super::session::Session;
 use super::values::{is_told, shown_in};
-use biela::mechanism::{DriverId, LoadTarget, Mechanism, Parameter, Unit};
+use biela::mechanism::{BodyId, DriverId, LoadTarget, Mechanism, Parameter, Unit};
 
 impl Session {
     /// Returns what a page shows once: names, units, limits.
@@ -147,8 +147,9 @@ impl Session {
 
 /// Returns the end of a load's slider \[N or N m\]: ten times the weight of all bodies.
 fn largest_load(mechanism: &Mechanism, parameters: &[f64]) -> f64 {
-    let masses = mechanism.bodies.iter().filter_map(|b| b.mass.as_ref());
-    let mass: f64 = masses.map(|mass| mass.value(parameters)).sum();
+    let bodies = (0..mechanism.bodies.len()).map(BodyId);
+    let weights = bodies.filter_map(|id| mechanism.weight_at(id, parameters));
+    let mass: f64 = weights.map(|weight| weight.mass).sum();
     if mass > 0.0 {
         10.0 * 9.81 * mass
     } else {

@@ -120,7 +120,7 @@ fn bodies(drawn: &Drawn, mechanism: &Mechanism) -> Vec<Value> {
             "frame": drawn.frame(Some(biela::mechanism::BodyId(index))),
             "markers": body.markers.iter().map(|id| mechanism.marker_path(*id)).collect::<Vec<_>>(),
             "bars": bars.collect::<Vec<_>>(),
-            "mass": body.mass.as_ref().map(|mass| mass.value(&drawn.parameters)),
+            "mass": mechanism.weight_at(biela::mechanism::BodyId(index), &drawn.parameters).map(|weight| weight.mass),
         })
     });
     bodies.collect()

@@ -24,8 +24,8 @@ use biela::kinematics::{
     self, AssemblyMode, Modes, NeededPlay, Origin, Path, Rates, Solver, System, offer_start,
 };
 use biela::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
-    rounded, shown,
+    BodyId, CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit,
+    fixed, rounded, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -33,8 +33,8 @@ use biela::mechanism::{
 /// Prints the bodies, joints and drivers with their equations, the degrees of freedom, the
 /// assembled pose at the drivers' start values, how far each body is from its estimate, and the
 /// reciprocal condition of the pose (1 is best, 0 a singular position). If it can close in other
-/// ways too, and has at most 40 bodies, a line says so. With masses or forces it
-/// prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. It
+/// ways too, and has at most 40 bodies, a line says so. It tells the areas of
+/// bodies with shapes, and the masses that follow. With masses or forces it prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. It
 /// warns of prescribed motions that leave the limits of their drivers, and of joints whose markers
 /// were drawn apart in a mechanism that is drawn in one pose. If the mechanism does not
 /// close, it says whether that is proved, which joints stay open and by how much, and prints the
@@ -133,6 +133,7 @@ impl Check {
             solver.restore(at.motion.pose());
         }
         print(&describe_pose(&mut solver))?;
+        print(&describe_shapes(mechanism, &solver.pose().parameters))?;
         input.check_rest(&mut solver)?;
         if let Some(at) = free {
             print(&describe_free_motion(&mut at?)?)?;
@@ -253,6 +254,41 @@ fn describe_free_motion(at: &mut AtRest) -> Result<String, Error> {
         }
     }
     Ok(out)
+}
+
+/// Tells the area of each body with shapes, and the mass that these give it.
+fn describe_shapes(mechanism: &Mechanism, parameters: &[f64]) -> String {
+    let mut out = String::new();
+    for (body, id) in mechanism.bodies.iter().zip((0..).map(BodyId)) {
+        let Some(section) = mechanism.section_of(id, parameters) else {
+            continue;
+        };
+        if out.is_empty() {
+            out += "\nshapes\n";
+        }
+        let _ = write!(
+            out,
+            "  {}: area {} m2",
+            body.name,
+            shown(rounded(section.area, 9))
+        );
+        let weight = mechanism.weight_at(id, parameters);
+        if let Some(weight) = weight.filter(|_| body.is_weighed) {
+            let [mass, x, y, inertia] = [
+                weight.mass,
+                weight.center[0],
+                weight.center[1],
+                weight.inertia,
+            ]
+            .map(|number| shown(rounded(number, 9)));
+            let _ = write!(
+                out,
+                ", mass {mass} kg, center [{x}, {y}] m, inertia {inertia} kg.m2"
+            );
+        }
+        out.push('\n');
+    }
+    out
 }
 
 /// Returns the number of equations of each joint.

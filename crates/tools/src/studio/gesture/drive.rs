@@ -2,7 +2,7 @@
 
 use super::mass::{USUAL_MASS, give_mass};
 use super::{Editing, Refusal};
-use biela::mechanism::Coordinate;
+use biela::mechanism::{Body, Coordinate};
 
 /// Drives the coordinate of a joint, from where it is drawn.
 pub(super) fn driver(editing: &mut Editing, name: &str) -> Result<(), Refusal> {
@@ -14,7 +14,7 @@ pub(super) fn driver(editing: &mut Editing, name: &str) -> Result<(), Refusal> {
 pub(super) fn freedom(editing: &mut Editing, name: &str) -> Result<(), Refusal> {
     start(editing, "freedoms", name)?;
     let mechanism = editing.mechanism()?;
-    if mechanism.bodies.iter().all(|body| body.mass.is_none()) {
+    if !mechanism.bodies.iter().any(Body::has_mass) {
         let joint = editing.joint(name)?;
         let bodies = [joint.from, joint.to].map(|id| mechanism.markers[id.index()].body);
         for body in bodies.into_iter().flatten() {

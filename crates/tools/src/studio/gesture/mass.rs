@@ -16,6 +16,11 @@ const OWN: f64 = 5e-3;
 /// another one.
 pub(super) fn mass(editing: &mut Editing, name: &str, mass: Option<f64>) -> Result<(), Refusal> {
     let body = editing.body(name)?;
+    if body.is_weighed {
+        return Err(
+            format!("the shapes of `{name}` give it its mass: change their `density`").into(),
+        );
+    }
     let mass = match (mass, &body.mass) {
         (Some(mass), _) => mass,
         (None, None) => USUAL_MASS,

@@ -49,8 +49,9 @@ fn add(editing: &mut Editing, noun: &str, [from, to]: [String; 2], keys: &str) {
 fn lighter(editing: &Editing, ends: &[String; 2]) -> f64 {
     let masses = ends.iter().filter_map(|path| {
         let (body, _) = path.split_once('.')?;
-        let mass = editing.body(body).ok()?.mass.as_ref()?;
-        Some(mass.value(&editing.drawn.parameters))
+        let mechanism = editing.mechanism().ok()?;
+        let id = mechanism.body_id(body)?;
+        Some(mechanism.weight_at(id, &editing.drawn.parameters)?.mass)
     });
     masses.reduce(f64::min).unwrap_or(USUAL_MASS)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use biela::kinematics::{Error, ForceQuantity, Output, OutputSource, Solution, Solver};
-use biela::mechanism::{DriverId, Expression, Indeterminate, Jet, Mechanism, Unit, shown};
+use biela::mechanism::{BodyId, DriverId, Indeterminate, Jet, Mechanism, Unit, shown};
 
 /// Magnitude below which a force of a few newtons is rounding.
 const NO_FORCE: f64 = 1e-12;
@@ -81,10 +81,10 @@ impl Forces {
         solution.seek_forces(solver);
         solution.solve(solver)?;
         let parameters = &solver.pose().parameters;
-        let value = |expression: &Expression| expression.value(parameters);
-        let masses = mechanism.bodies.iter().filter_map(|body| {
-            let inertia = body.inertia.as_ref().map_or(0.0, value);
-            Some((body.name.clone(), value(body.mass.as_ref()?), inertia))
+        let bodies = mechanism.bodies.iter().zip((0..).map(BodyId));
+        let masses = bodies.filter_map(|(body, id)| {
+            let weight = mechanism.weight_at(id, parameters)?;
+            Some((body.name.clone(), weight.mass, weight.inertia))
         });
         let masses = masses.collect();
         let values = Output::all(&mechanism).into_iter().filter_map(|output| {

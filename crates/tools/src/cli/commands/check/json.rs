@@ -12,7 +12,7 @@ use crate::cli::given::settings::Settings;
 use crate::cli::told::error::Error;
 use biela::dynamics::KeptStart;
 use biela::kinematics::{self, NeededPlay, OpenJoint, Path, Rates, Solver, System, offer_start};
-use biela::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
+use biela::mechanism::{BodyId, Diagnostic, DriverSource, Mechanism, Source};
 
 /// Returns the report on a file and the outcome of the command.
 ///
@@ -137,6 +137,23 @@ fn describe(mechanism: &Arc<Mechanism>) -> Value {
     })
 }
 
+/// Returns area, mass, centre and inertia of each body with shapes; without a density the area alone.
+fn shapes(mechanism: &Mechanism, parameters: &[f64]) -> Vec<Value> {
+    let bodies = mechanism.bodies.iter().zip((0..).map(BodyId));
+    let shapes = bodies.filter_map(|(body, id)| {
+        let section = mechanism.section_of(id, parameters)?;
+        let mut found = json!({ "body": body.name, "area": section.area });
+        let weight = mechanism.weight_at(id, parameters);
+        if let Some(weight) = weight.filter(|_| body.is_weighed) {
+            found["mass"] = json!(weight.mass);
+            found["center"] = json!(weight.center);
+            found["inertia"] = json!(weight.inertia);
+        }
+        Some(found)
+    });
+    shapes.collect()
+}
+
 /// Assembles the mechanism at its start values and describes the pose; also says why it cannot rest
 /// there.
 fn assembled(
@@ -185,6 +202,10 @@ fn assembled(
         "excursions": excursions(&solver),
         "overlaps": texts(&mut overlaps.map(|overlap| overlap.describe(mechanism))),
     });
+    let shapes = shapes(mechanism, &solver.pose().parameters);
+    if !shapes.is_empty() {
+        found["shapes"] = shapes.into();
+    }
     if mechanism.has_dynamics() {
         let forces = Forces::at_rest(&mut solver)?;
         let values = forces.values.iter();
