@@ -292,7 +292,7 @@ impl Obstacle {
             bounds.join(&part.bounds);
         }
         let line = match mark.layer {
-            Layer::Trace | Layer::Pose => 0.6,
+            Layer::Trace | Layer::Pose | Layer::Shape => 0.6,
             Layer::Wheel | Layer::Plate | Layer::Bar | Layer::Slot | Layer::Dimension => 1.5,
             Layer::Ground | Layer::Driver | Layer::Scale | Layer::Grid | Layer::Curve => 2.5,
             Layer::Slider | Layer::Block | Layer::Joint | Layer::Point | Layer::Force => 4.0,

@@ -103,8 +103,18 @@ impl Outline {
         }
     }
 
+    /// Continues straight to a point.
+    pub(super) fn continue_to(&mut self, to: Point) {
+        self.0.push(Segment::Line(to));
+    }
+
+    /// Closes the last line.
+    pub(super) fn close(&mut self) {
+        self.0.push(Segment::Close);
+    }
+
     /// Continues along an arc from its first point.
-    fn add_arc(&mut self, center: Point, radius: f64, from: f64, by: f64) {
+    pub(super) fn add_arc(&mut self, center: Point, radius: f64, from: f64, by: f64) {
         // Up to a quarter turn a cubic is within 3e-4 of the radius.
         let pieces = (by.abs() / std::f64::consts::FRAC_PI_2 - 1e-9)
             .ceil()

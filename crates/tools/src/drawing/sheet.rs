@@ -61,6 +61,7 @@ pub(super) enum Layer {
     Grid,
     Ground,
     Pose,
+    Shape,
     Slider,
     Plate,
     Bar,
@@ -79,10 +80,11 @@ pub(super) enum Layer {
 
 impl Layer {
     /// All layers with their names, in the order in which later ones cover earlier ones.
-    pub(super) const ALL: [(Self, &'static str); 17] = [
+    pub(super) const ALL: [(Self, &'static str); 18] = [
         (Self::Grid, "grid"),
         (Self::Ground, "ground"),
         (Self::Pose, "poses"),
+        (Self::Shape, "shapes"),
         (Self::Slider, "sliders"),
         (Self::Plate, "plates"),
         (Self::Bar, "bars"),

@@ -17,6 +17,7 @@ pub(in crate::drawing) fn compose(
     traces: bool,
 ) -> Vec<Symbol> {
     let mut composer = Composer::new(mechanism, parameters, q, motion);
+    silhouette::compose(&mut composer);
     // The other joints decide where a follower reaches, which its knife points to.
     let is_cam = |joint: &&Joint| joint.cam().is_some();
     let (cams, others): (Vec<&Joint>, Vec<&Joint>) = mechanism.joints.iter().partition(is_cam);
@@ -118,6 +119,10 @@ impl<'a> Composer<'a> {
 
     pub(super) fn value(&self, expression: &Expression) -> f64 {
         expression.value(self.parameters)
+    }
+
+    pub(super) fn parameters(&self) -> &'a [f64] {
+        self.parameters
     }
 
     /// Returns the value of a parameter.

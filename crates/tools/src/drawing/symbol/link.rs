@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::composer::bits;
 use super::*;
+use biela::mechanism::MarkerId;
 
 /// A body that spans points of its frame. One point is a small disc, two are a bar, more a plate.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +19,9 @@ pub struct Link {
 /// all of it.
 pub(super) fn compose(composer: &mut Composer, body: BodyId) {
     let spans = std::mem::take(&mut composer.spans[body.index()]);
-    let mut points = composer.positions(Some(body));
+    let Some(mut points) = outside_plates(composer, body) else {
+        return;
+    };
     points.extend(spans);
     let mut seen = HashSet::new();
     points.retain(|point| seen.insert(bits(*point)));
@@ -49,6 +52,30 @@ pub(super) fn compose(composer: &mut Composer, body: BodyId) {
         composer.shown_by[body.index()].push(composer.symbols.len());
         composer.symbols.push(Link { body, points }.into());
     }
+}
+
+/// Returns the markers that a link joins; `None` for a body whose plates show all of it. Corners of plates
+/// are no joints.
+fn outside_plates(composer: &Composer, body: BodyId) -> Option<Vec<[f64; 2]>> {
+    let (mechanism, parameters) = (composer.mechanism, composer.parameters());
+    let plates = mechanism.shapes_of(Some(body)).map(|(_, shape)| shape);
+    let plates: Vec<_> = plates.filter(|shape| shape.is_plate()).collect();
+    if plates.is_empty() {
+        return Some(composer.positions(Some(body)));
+    }
+    let markers = mechanism.bodies[body.index()].markers.iter();
+    let is_corner = |id: &MarkerId| {
+        let outlines = plates.iter().filter(|plate| plate.word() == "outline");
+        outlines.flat_map(|plate| plate.markers()).any(|own| own == *id)
+    };
+    let joints: Vec<MarkerId> = markers.copied().filter(|id| !is_corner(id)).collect();
+    let points: Vec<[f64; 2]> = joints.iter().map(|id| composer.anchor(*id).position).collect();
+    let covered = |(id, point): (&MarkerId, &[f64; 2])| {
+        plates.iter().any(|plate| {
+            plate.markers().any(|own| own == *id) || mechanism.covers(plate, *point, parameters)
+        })
+    };
+    (!joints.iter().zip(&points).all(covered)).then_some(points)
 }
 
 impl Link {
@@ -98,7 +125,7 @@ impl Shape for Link {
 }
 
 /// Returns places for a body's name along the edges of its hull, and inside a large one.
-fn places(hull: &[Point]) -> Vec<Candidate> {
+pub(super) fn places(hull: &[Point]) -> Vec<Candidate> {
     let center = hull.iter().sum::<Point>() / hull.len() as f64;
     if hull.len() == 1 {
         return Candidate::around(center, BAR).collect();

@@ -120,6 +120,7 @@ macro_rules! symbols {
 
 // File and symbol, and the joint that the file composes.
 symbols! { composer, ends:
+    silhouette: Silhouette;
     link: Link;
     block: Block, JointKind::Translational => block::compose(composer, ends);
     slide_way: SlideWay;

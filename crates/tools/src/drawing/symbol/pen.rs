@@ -383,7 +383,13 @@ impl<'a> Pen<'a> {
 fn shows_body(mark: &Mark) -> bool {
     matches!(
         mark.layer,
-        Layer::Slider | Layer::Plate | Layer::Bar | Layer::Wheel | Layer::Slot | Layer::Block
+        Layer::Shape
+            | Layer::Slider
+            | Layer::Plate
+            | Layer::Bar
+            | Layer::Wheel
+            | Layer::Slot
+            | Layer::Block
     )
 }
 
