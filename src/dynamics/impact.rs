@@ -225,7 +225,12 @@ impl Equations {
         let is_max = touch.side == Mode::AtMax;
         let value = self.at(touch).bounds[usize::from(is_max)];
         Error::Stop {
-            limit: Box::new(StopLimit::new(&mechanism.stops[*stop], is_max, value)),
+            limit: Box::new(StopLimit::new(
+                mechanism,
+                &mechanism.stops[*stop],
+                is_max,
+                value,
+            )),
             time,
         }
     }

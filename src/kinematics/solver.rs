@@ -7,7 +7,7 @@ use super::analysis::{
     RangeSettings, Sensitivity,
 };
 use super::assembly::estimate::{Move, estimate, moves};
-use super::constraint::Constraint;
+use super::constraint::{Clearance, Constraint};
 use super::continuation::{Blocked, Budget, PathTracker, PathWatch, Progress, check_pose};
 use super::error::Error;
 use super::forces::{
@@ -26,7 +26,7 @@ use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{
     BodyId, Coordinate, DriverId, Indeterminate, Jet, Load, MarkerId, Mechanism, Order,
-    ParameterId, PrescribedMotion,
+    ParameterId, PrescribedMotion, ShapeId,
 };
 
 /// Solves position, velocity and acceleration of one mechanism.
@@ -382,6 +382,15 @@ impl Solver {
     #[must_use]
     pub fn measure(&self, index: usize, rates: &Rates) -> Jet {
         self.state.measure(&*self.compiled.measures[index], rates)
+    }
+
+    /// Returns the clearance of two shapes at the present pose and the nearest places of both outlines
+    /// \[m\]; `None` for shapes that no measure and no contact names.
+    #[must_use]
+    pub fn clearance(&self, shapes: [ShapeId; 2]) -> Option<(f64, [[f64; 2]; 2])> {
+        let clearance = Clearance { shapes };
+        let places = clearance.places(&self.state.at)?;
+        Some((clearance.value(&self.state.at), places.map(Into::into)))
     }
 
     /// Returns value, rate and acceleration of a relation, such as that of a

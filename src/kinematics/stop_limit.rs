@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::mechanism::{CoordinateKind, Stop};
+use crate::mechanism::{CoordinateKind, Mechanism, Stop, rounded, shown};
 
 /// One of the two limits of a [`Stop`], or one of the two ends of an open curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +11,8 @@ pub struct StopLimit {
     pub stop: String,
     /// The coordinate's word, or the measure or driver whose coordinate it is.
     pub subject: String,
+    /// Names of the two shapes of a contact.
+    pub shapes: Option<[String; 2]>,
     /// Kind of the coordinate, `None` for a place on a curve.
     pub kind: Option<CoordinateKind>,
     /// Whether it is the largest value or the last end, not the least value or the first end.
@@ -21,10 +23,12 @@ pub struct StopLimit {
 
 impl StopLimit {
     /// Makes a limit of a stop with this value.
-    pub(crate) fn new(stop: &Stop, is_max: bool, value: f64) -> Self {
+    pub(crate) fn new(mechanism: &Mechanism, stop: &Stop, is_max: bool, value: f64) -> Self {
+        let shapes = stop.coordinate.shapes();
         Self {
             stop: stop.name.clone(),
             subject: stop.subject().to_owned(),
+            shapes: shapes.map(|shapes| shapes.map(|id| mechanism.shape_path(id))),
             kind: Some(stop.coordinate.kind),
             is_max,
             value,
@@ -36,6 +40,7 @@ impl StopLimit {
         Self {
             stop: joint.to_owned(),
             subject: String::new(),
+            shapes: None,
             kind: None,
             is_max,
             value,
@@ -48,6 +53,16 @@ impl StopLimit {
             let end = if self.is_max { "last" } else { "first" };
             return format!("beyond the {end} end of the curve of joint `{}`", self.stop);
         };
+        if let Some([a, b]) = &self.shapes {
+            let depth = match value < 0.0 {
+                true => format!(" by {} mm", shown(rounded(-1e3 * value, 4))),
+                false => String::new(),
+            };
+            return format!(
+                "beyond contact `{}`: `{a}` and `{b}` overlap{depth}",
+                self.stop
+            );
+        }
         let [value, limit] = kind.show_apart(value, self.value);
         let (side, key) = match self.is_max {
             true => ("above", "max"),
@@ -65,6 +80,9 @@ impl fmt::Display for StopLimit {
         let Some(kind) = self.kind else {
             return write!(f, "the curve of joint `{}` ends here", self.stop);
         };
+        if let Some([a, b]) = &self.shapes {
+            return write!(f, "contact `{}` reached: `{a}` touches `{b}`", self.stop);
+        }
         let value = kind.show(self.value);
         write!(
             f,

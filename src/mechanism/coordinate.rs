@@ -1,7 +1,7 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{Driver, DriverId, DriverSource, MarkerId, Mechanism, Order, Unit};
+use super::{Driver, DriverId, DriverSource, MarkerId, Mechanism, Order, ShapeId, Unit};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub struct Coordinate {
     /// Marker j, measured to.
     pub to: MarkerId,
     /// Marker k on whose axes `x` and `y` are measured; marker i unless the file gives another.
-    /// Without meaning for `angle` and `distance`.
+    /// Without meaning for `angle`, `distance` and `clearance`.
     pub axes: MarkerId,
 }
 
@@ -22,6 +22,15 @@ impl Coordinate {
     #[must_use]
     pub fn markers(&self) -> [MarkerId; 3] {
         [self.from, self.to, self.axes]
+    }
+
+    /// Returns the two shapes of a clearance.
+    #[must_use]
+    pub fn shapes(&self) -> Option<[ShapeId; 2]> {
+        match self.kind {
+            CoordinateKind::Clearance(shapes) => Some(shapes),
+            _ => None,
+        }
     }
 
     /// Returns its value \[m or rad\] where the markers are at these places: x, y \[m\] and angle
@@ -35,6 +44,7 @@ impl Coordinate {
             CoordinateKind::X => cos * dx + sin * dy,
             CoordinateKind::Y => cos * dy - sin * dx,
             CoordinateKind::Distance => dx.hypot(dy),
+            CoordinateKind::Clearance(_) => unreachable!("no freedom is a clearance"),
         }
     }
 
@@ -52,6 +62,10 @@ impl Coordinate {
             CoordinateKind::X => format!("x from `{from}` to `{to}`{on_axes}"),
             CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
             CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
+            CoordinateKind::Clearance(shapes) => {
+                let [a, b] = shapes.map(|id| mechanism.shape_path(id));
+                format!("the clearance of `{a}` and `{b}`")
+            }
         }
     }
 }
@@ -137,6 +151,8 @@ pub enum CoordinateKind {
     Y,
     /// `‖P_j − P_i‖` \[m\].
     Distance,
+    /// Least distance of the outlines of two shapes \[m\]. The markers are the first ones of both.
+    Clearance([ShapeId; 2]),
 }
 
 impl CoordinateKind {
@@ -161,6 +177,7 @@ impl CoordinateKind {
             Self::X => "x",
             Self::Y => "y",
             Self::Distance => "distance",
+            Self::Clearance(_) => "clearance",
         }
     }
 
@@ -179,7 +196,7 @@ impl CoordinateKind {
     pub fn has_axes(self) -> bool {
         match self {
             Self::X | Self::Y => true,
-            Self::Angle | Self::Distance => false,
+            Self::Angle | Self::Distance | Self::Clearance(_) => false,
         }
     }
 
@@ -188,7 +205,7 @@ impl CoordinateKind {
     pub fn is_angle(self) -> bool {
         match self {
             Self::Angle => true,
-            Self::X | Self::Y | Self::Distance => false,
+            Self::X | Self::Y | Self::Distance | Self::Clearance(_) => false,
         }
     }
 

@@ -18,7 +18,7 @@
 //! | `force_quantity`, `reaction` | [`ForceQuantity`]: forces, energies and inertias, and their names |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `play` | [`Play`]: joints that open |
-//! | `shape` | [`Shape`]: outlines of bodies and of ground, and what they weigh |
+//! | `shape`, `body_shapes` | [`Shape`]: outlines of bodies and of ground, and what they weigh |
 //! | `stop` | [`Stop`]: limits of a coordinate |
 //! | `excursion` | [`Excursion`]: a driver or an input beyond its limits |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
@@ -29,6 +29,7 @@
 //!
 //! Nothing here computes a pose.
 
+mod body_shapes;
 mod coordinate;
 mod coupling;
 mod curve;
@@ -101,7 +102,7 @@ pub(crate) use rope::MOST_BODIES;
 pub use rope::{Pulley, PulleySide, Rope, RopePoint};
 pub use setting::{Extrapolation, RateSource};
 pub use shape::{
-    OutlineCorner, Piece, Section, Shape, ShapeFault, ShapeFaultKind,
+    Core, Feature, FeatureKind, OutlineCorner, Piece, Section, Shape, ShapeFault, ShapeFaultKind,
     ShapeForm, Weight,
 };
 pub(crate) use signal::SUFFIXES;

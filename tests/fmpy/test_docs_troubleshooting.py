@@ -26,6 +26,7 @@ FILES_WITHOUT_MESSAGES = {
     "fmi/model_description/writer.rs": "the FMU's XML",
     "fmi/model_description/xml.rs": "likewise",
     "cli/commands/check/forces.rs": "the report of `check`",
+    "cli/commands/check/shapes.rs": "likewise, but for a warning",
     "cli/commands/range/forces.rs": "the report of `range`",
     "fmi/log.rs": "descriptions of the log categories",
     "exchange/linkage2/write.rs": "the XML of documents",

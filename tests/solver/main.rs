@@ -11,6 +11,7 @@ mod generated;
 mod assembly;
 mod cam;
 mod closed_form;
+mod contacts;
 mod coupling;
 mod curve;
 mod drawn;

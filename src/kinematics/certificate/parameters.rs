@@ -14,15 +14,15 @@ use nalgebra::Vector2;
 
 use crate::kinematics::constraint::configuration::{CamProfile, Configuration};
 use crate::kinematics::constraint::moving_configuration::{
-    Enclosed, EnclosedCurves, VariedConfiguration, VariedMechanism, bend, evaluate,
+    Bodies, Enclosed, EnclosedCurves, VariedConfiguration, VariedMechanism, bend, evaluate,
 };
-use crate::kinematics::constraint::{Constraint, Dimension, partial};
+use crate::kinematics::constraint::{Constraint, CoreMotion, Dimension, partial};
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{Equation, System, Target, Targets};
 use crate::kinematics::tolerances::SMALLEST_SUBSTEP;
 use crate::mechanism::{
     Coordinate, DriverId, Expression, Interval, Joint, Marker, MarkerId, Mechanism, MotionInForce,
-    MovingProfile, Number, ParameterId,
+    MovingProfile, Number, ParameterId, ShapeId,
 };
 
 /// Largest deviation of a number or a prescribed motion that is not known to be continuous, in
@@ -469,6 +469,37 @@ impl ParameterBounds {
         };
         let enclosed: Enclosed = relation.along(&mechanism);
         bend_within(&enclosed, largest_jump)
+    }
+
+    /// Bounds the motion of a shape's core on its body while parameters move. A place on an arc keeps its
+    /// part of the arc's angle, which moves with the ends.
+    pub(in crate::kinematics) fn core_motion(&self, shape: ShapeId) -> CoreMotion {
+        let mut motion = CoreMotion::default();
+        if !self.moving {
+            return motion;
+        }
+        let size = |of: fn(&Enclosed) -> Interval, numbers: &[Enclosed]| {
+            let sizes = numbers.iter().map(|number| of(number).magnitude());
+            sizes.sum::<f64>()
+        };
+        let first = |number: &Enclosed| number.first();
+        let second = |number: &Enclosed| number.second();
+        for k in 0..self.along.features(shape) {
+            let feature = self.along.feature(shape, k);
+            let of_ends = |of| size(of, &feature.ends[0]).max(size(of, &feature.ends[1]));
+            let own = |of| size(of, &feature.center) + size(of, &[feature.radius]);
+            let mut way = own(first) + of_ends(first);
+            let mut bend = own(second) + of_ends(second);
+            let radius = feature.radius.value;
+            if !feature.radius.is_zero() && way > 0.0 {
+                bend += way * way / radius.low.max(0.0);
+                way += size(first, &feature.center);
+            }
+            motion.way = motion.way.max(way);
+            motion.bend = motion.bend.max(bend);
+        }
+        motion.bend += self.along.core_radius(shape).second().magnitude();
+        motion
     }
 
     /// Bounds the [bend](bend()) of a number; infinite where it may jump.

@@ -7,8 +7,8 @@ use nalgebra::Vector2;
 use crate::kinematics::Error;
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
 use crate::mechanism::{
-    BodyId, Expression, Interval, Jet, Jet3, MarkerId, Mechanism, MotionInForce, Number,
-    ParameterId, PrescribedMotion, ProfileInForce,
+    BodyId, Core, Expression, FeatureKind, Interval, Jet, Jet3, MarkerId, Mechanism, MotionInForce,
+    Number, ParameterId, PrescribedMotion, ProfileInForce, Shape, ShapeId,
 };
 
 /// Returns a vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
@@ -174,6 +174,59 @@ pub struct Coefficient {
     pub what: String,
 }
 
+/// The core of a shape on its body, with the parameter values in force. Those of shapes that no clearance
+/// names are empty.
+#[derive(Clone, Debug)]
+pub(in crate::kinematics) struct ShapeCore<N> {
+    /// The body that has it, `None` on ground.
+    pub(in crate::kinematics) body: Option<BodyId>,
+    /// Core and radius in the body's frame.
+    pub(in crate::kinematics) core: Core<N>,
+    /// Radius of a circle about the body's origin that contains the core \[m\].
+    pub(in crate::kinematics) reach: f64,
+    is_watched: bool,
+}
+
+impl<N: Number> ShapeCore<N> {
+    /// Makes the storage for all shapes of a mechanism.
+    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let shapes = mechanism.shapes.iter().zip((0..).map(ShapeId));
+        let cores = shapes.map(|(shape, id)| {
+            let is_watched = mechanism.has_clearance_of(id);
+            Self {
+                body: shape.body,
+                core: match is_watched {
+                    true => Core::for_shape(shape),
+                    false => Core::default(),
+                },
+                reach: 0.0,
+                is_watched,
+            }
+        });
+        cores.collect()
+    }
+
+    /// Takes over places of markers and numbers. Allocates nothing.
+    pub(super) fn set(
+        &mut self,
+        shape: &Shape,
+        point: &dyn Fn(MarkerId) -> [N; 2],
+        number: &dyn Fn(&Expression) -> N,
+    ) {
+        if !self.is_watched {
+            return;
+        }
+        self.core.set(shape, point, number);
+        let distance = |[x, y]: [N; 2]| x.real().hypot(y.real());
+        let reaches = self.core.features.iter().map(|feature| match feature.kind {
+            FeatureKind::Place => distance(feature.center),
+            FeatureKind::Edge => distance(feature.ends[0]).max(distance(feature.ends[1])),
+            _ => distance(feature.center) + feature.radius.real(),
+        });
+        self.reach = reaches.fold(0.0, f64::max);
+    }
+}
+
 /// The bodies of a mechanism at one q, and the markers on them.
 ///
 /// Made once; [`set_parameters`](Self::set_parameters) and [`set_pose`](Self::set_pose) then
@@ -186,6 +239,7 @@ pub struct Configuration {
     coefficients: Vec<f64>,
     profiles: Vec<CamProfile>,
     laws: Vec<CouplingLaw>,
+    cores: Vec<ShapeCore<f64>>,
     /// The joint unknowns, behind those of the bodies.
     joint_unknowns: Vec<f64>,
     size: f64,
@@ -216,6 +270,7 @@ impl Configuration {
             coefficients: vec![0.0; coefficients],
             profiles,
             laws,
+            cores: ShapeCore::all(mechanism),
             joint_unknowns: vec![0.0; joint_unknowns],
             size: 0.0,
         }
@@ -247,6 +302,11 @@ impl Configuration {
                 });
             }
             frame.axis = axis(frame.angle);
+        }
+        let frames = &self.frames;
+        for (core, shape) in self.cores.iter_mut().zip(&mechanism.shapes) {
+            let point = |id: MarkerId| frames[id.index()].position.into();
+            core.set(shape, &point, &|number| number.evaluate(&value, 0.0));
         }
         for (value_in_force, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
             *value_in_force = coefficient.expression.evaluate(&value, 0.0);
@@ -343,8 +403,13 @@ impl Configuration {
         &mut self.bodies
     }
 
+    /// Returns the core of a shape with the parameter values in force.
+    pub(in crate::kinematics) fn core(&self, shape: ShapeId) -> &ShapeCore<f64> {
+        &self.cores[shape.index()]
+    }
+
     /// Returns the frame of a body, that of ground for `None`.
-    fn frame(&self, body: Option<BodyId>) -> &BodyPose {
+    pub(in crate::kinematics) fn frame(&self, body: Option<BodyId>) -> &BodyPose {
         let place = body.map_or(self.bodies.len() - 1, BodyId::index);
         &self.bodies[place]
     }

@@ -14,7 +14,9 @@ use super::moving_configuration::{
     Bodies, Moving, VariedMarker, VariedMechanism, of_contour, on_path,
 };
 use super::region::Region;
-use crate::mechanism::{BodyId, Interval, Jet, Jet3, MarkerId, Number, PointPath, Taylor};
+use crate::mechanism::{
+    BodyId, Feature, Interval, Jet, Jet3, MarkerId, Number, PointPath, ShapeId, Taylor,
+};
 
 /// Bounds of a quantity in a region, and of its derivatives along lines through it.
 pub type Bounded = Taylor<Interval, 2>;
@@ -192,6 +194,40 @@ impl<S: Around, const N: usize> Bodies<Taylor<S, N>> for Line<'_> {
             row.borrow_mut().add_joint_unknown(column, 0.0);
         }
         self.unknown(column, self.at.joint_unknown(id))
+    }
+
+    fn frame(&self, body: Option<BodyId>) -> ([Taylor<S, N>; 2], [Taylor<S, N>; 2]) {
+        self.note(body);
+        let frame = self.at.frame(body);
+        let axis = Vector2::new(frame.cos, frame.sin);
+        let pose = MarkerPose {
+            body,
+            arm: Vector2::zeros(),
+            point: frame.origin,
+            axis,
+            theta: frame.phi,
+        };
+        let origin = [0, 1].map(|k| match body {
+            Some(body) => self.unknown(3 * body.index() + k, frame.origin[k]),
+            None => Taylor::constant(0.0),
+        });
+        (origin, self.turning(pose, axis))
+    }
+
+    fn carrier(&self, shape: ShapeId) -> Option<BodyId> {
+        self.at.core(shape).body
+    }
+
+    fn features(&self, shape: ShapeId) -> usize {
+        self.at.core(shape).core.features.len()
+    }
+
+    fn feature(&self, shape: ShapeId, k: usize) -> Feature<Taylor<S, N>> {
+        self.at.core(shape).core.features[k].map(Taylor::constant)
+    }
+
+    fn core_radius(&self, shape: ShapeId) -> Taylor<S, N> {
+        Taylor::constant(self.at.core(shape).core.radius)
     }
 }
 

@@ -20,6 +20,7 @@
 
 mod angle;
 mod cam;
+mod clearance;
 mod coincidence;
 pub(super) mod configuration;
 mod coupling;
@@ -40,6 +41,7 @@ use std::any::Any;
 
 pub use angle::Angle;
 pub use cam::{Contour, FlatContact, FlatFace, KnifeEdge, Roller, RollerContact};
+pub use clearance::{Clearance, CoreMotion};
 pub use coincidence::Coincidence;
 pub use coupling::{CoupledExpression, CoupledFunction, Coupling};
 pub use curve::{AlongCurve, CurveContact, CurvePath, FormulaPath, OnCurve};
@@ -102,6 +104,8 @@ pub enum CoordinateRelation {
     Projection(Projection),
     /// A distance.
     Distance(Distance),
+    /// A clearance.
+    Clearance(Clearance),
 }
 
 impl CoordinateRelation {
@@ -125,6 +129,7 @@ impl CoordinateRelation {
             CoordinateKind::X => Self::Projection(projection(Axis::X)),
             CoordinateKind::Y => Self::Projection(projection(Axis::Y)),
             CoordinateKind::Distance => Self::Distance(Distance { from, to }),
+            CoordinateKind::Clearance(shapes) => Self::Clearance(Clearance { shapes }),
         }
     }
 
@@ -135,6 +140,7 @@ impl CoordinateRelation {
             Self::Angle(relation) => relation,
             Self::Projection(relation) => relation,
             Self::Distance(relation) => relation,
+            Self::Clearance(relation) => relation,
         }
     }
 }
@@ -145,6 +151,7 @@ impl Formula for CoordinateRelation {
             Self::Angle(relation) => relation.evaluate(at),
             Self::Projection(relation) => relation.evaluate(at),
             Self::Distance(relation) => relation.evaluate(at),
+            Self::Clearance(relation) => relation.evaluate(at),
         }
     }
 }
@@ -156,6 +163,7 @@ pub fn of_coordinate(coordinate: &Coordinate) -> Box<dyn Constraint> {
         CoordinateRelation::Angle(relation) => Box::new(relation),
         CoordinateRelation::Projection(relation) => Box::new(relation),
         CoordinateRelation::Distance(relation) => Box::new(relation),
+        CoordinateRelation::Clearance(relation) => Box::new(relation),
     }
 }
 

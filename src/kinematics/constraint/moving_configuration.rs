@@ -9,11 +9,11 @@
 //! | [`Enclosed`] | along a sub-step, each enclosed over all of it | the certificate while parameters move |
 
 use super::configuration::{
-    CamProfile, Coefficient, CoefficientId, JointUnknownId, LawId, ProfileId,
+    CamProfile, Coefficient, CoefficientId, JointUnknownId, LawId, ProfileId, ShapeCore,
 };
 use crate::mechanism::{
-    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, MotionInForce, MovingProfile,
-    Number, PointPath, ProfileAlong, Taylor,
+    BodyId, Dual, Expression, Feature, Interval, Jet3, MarkerId, Mechanism, MotionInForce,
+    MovingProfile, Number, PointPath, ProfileAlong, ShapeId, Taylor,
 };
 
 /// A quantity with its first two derivatives in time, each with its change along a direction.
@@ -54,6 +54,21 @@ pub trait Bodies<N> {
 
     /// Returns a joint unknown.
     fn joint_unknown(&self, id: JointUnknownId) -> N;
+
+    /// Returns origin and x-axis of a body, those of ground for `None`.
+    fn frame(&self, body: Option<BodyId>) -> ([N; 2], [N; 2]);
+
+    /// Returns the body of a shape.
+    fn carrier(&self, shape: ShapeId) -> Option<BodyId>;
+
+    /// Returns the number of features of a shape's core.
+    fn features(&self, shape: ShapeId) -> usize;
+
+    /// Returns one of them, in the frame of its body.
+    fn feature(&self, shape: ShapeId, k: usize) -> Feature<N>;
+
+    /// Returns the radius round a shape's core.
+    fn core_radius(&self, shape: ShapeId) -> N;
 }
 
 /// The profiles of all cams and the laws of all couplings along a direction.
@@ -207,11 +222,19 @@ struct VariedFrame<N> {
     axis: [N; 2],
 }
 
+/// The core of a shape, with the numbers that it has.
+#[derive(Clone, Debug)]
+struct VariedCore<N> {
+    numbers: Vec<N>,
+    core: ShapeCore<N>,
+}
+
 /// The bodies of a moving mechanism: the counterpart of [`Configuration`](crate::kinematics::Configuration).
 #[derive(Clone, Debug)]
 pub struct VariedConfiguration<N = Varied> {
     frames: Vec<VariedFrame<N>>,
     coefficients: Vec<N>,
+    cores: Vec<VariedCore<N>>,
     bodies: usize,
     /// The generalized coordinates, then the joint unknowns.
     q: Vec<N>,
@@ -234,6 +257,7 @@ impl<N> Default for VariedConfiguration<N> {
         Self {
             frames: Vec::new(),
             coefficients: Vec::new(),
+            cores: Vec::new(),
             bodies: 0,
             q: Vec::new(),
             axes: Vec::new(),
@@ -257,9 +281,15 @@ impl<N: Number> VariedConfiguration<N> {
             axis,
         });
         let bodies = mechanism.bodies.len();
+        let cores = ShapeCore::all(mechanism).into_iter().zip(&mechanism.shapes);
+        let cores = cores.map(|(core, shape)| VariedCore {
+            numbers: vec![zero; shape.numbers().count()],
+            core,
+        });
         let mut origin = Self {
             frames: frames.collect(),
             coefficients: vec![zero; coefficients.len()],
+            cores: cores.collect(),
             bodies,
             q: vec![zero; unknowns],
             axes: vec![axis; bodies],
@@ -293,6 +323,21 @@ impl<N: Number> VariedConfiguration<N> {
             if let Some(value) = value(&coefficient.expression) {
                 *number = value;
             }
+        }
+        let frames = &self.frames;
+        for (core, shape) in self.cores.iter_mut().zip(&mechanism.shapes) {
+            for (number, expression) in core.numbers.iter_mut().zip(shape.numbers()) {
+                if let Some(value) = value(expression) {
+                    *number = value;
+                }
+            }
+            let numbers = &core.numbers;
+            let point = |id: MarkerId| frames[id.index()].position;
+            core.core.set(shape, &point, &|number| {
+                let mut known = shape.numbers().zip(numbers);
+                let found = known.find(|(own, _)| std::ptr::eq(*own, number));
+                found.map_or_else(N::unknown, |(_, value)| *value)
+            });
         }
     }
 
@@ -350,6 +395,30 @@ impl<N: Number> Bodies<N> for VariedConfiguration<N> {
 
     fn joint_unknown(&self, id: JointUnknownId) -> N {
         self.q[3 * self.bodies + id.0]
+    }
+
+    fn frame(&self, body: Option<BodyId>) -> ([N; 2], [N; 2]) {
+        let zero = N::constant(0.0);
+        let Some(body) = body.map(BodyId::index) else {
+            return ([zero; 2], [N::constant(1.0), zero]);
+        };
+        ([self.q[3 * body], self.q[3 * body + 1]], self.axes[body])
+    }
+
+    fn carrier(&self, shape: ShapeId) -> Option<BodyId> {
+        self.cores[shape.index()].core.body
+    }
+
+    fn features(&self, shape: ShapeId) -> usize {
+        self.cores[shape.index()].core.core.features.len()
+    }
+
+    fn feature(&self, shape: ShapeId, k: usize) -> Feature<N> {
+        self.cores[shape.index()].core.core.features[k]
+    }
+
+    fn core_radius(&self, shape: ShapeId) -> N {
+        self.cores[shape.index()].core.core.radius
     }
 }
 
@@ -453,6 +522,36 @@ impl<N: Moving> VariedMechanism<'_, '_, N> {
         self.bodies.joint_unknown(id)
     }
 
+    /// Returns origin and x-axis of a body, those of ground for `None`.
+    #[must_use]
+    pub fn frame(&self, body: Option<BodyId>) -> ([N; 2], [N; 2]) {
+        self.bodies.frame(body)
+    }
+
+    /// Returns the body of a shape.
+    #[must_use]
+    pub fn carrier(&self, shape: ShapeId) -> Option<BodyId> {
+        self.bodies.carrier(shape)
+    }
+
+    /// Returns the number of features of a shape's core.
+    #[must_use]
+    pub fn features(&self, shape: ShapeId) -> usize {
+        self.bodies.features(shape)
+    }
+
+    /// Returns one of them, in the frame of its body.
+    #[must_use]
+    pub fn feature(&self, shape: ShapeId, k: usize) -> Feature<N> {
+        self.bodies.feature(shape, k)
+    }
+
+    /// Returns the radius round a shape's core.
+    #[must_use]
+    pub fn core_radius(&self, shape: ShapeId) -> N {
+        self.bodies.core_radius(shape)
+    }
+
     /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ).
     #[must_use]
     pub fn radius(&self, profile: ProfileId, theta: N) -> [N; 2] {
@@ -486,7 +585,7 @@ pub fn rotate<N: Number>(angle: N, vector: [N; 2]) -> [N; 2] {
 }
 
 /// Returns a vector turned as the x-axis is to the unit vector (cos, sin).
-fn turned<N: Number>([cos, sin]: [N; 2], [x, y]: [N; 2]) -> [N; 2] {
+pub(super) fn turned<N: Number>([cos, sin]: [N; 2], [x, y]: [N; 2]) -> [N; 2] {
     [cos * x - sin * y, sin * x + cos * y]
 }
 

@@ -26,10 +26,14 @@ G = [0.3, -0.2, 0.4]
 H = [0, 0]
 [bodies.a]
 markers = { A = [0.2, 0.1, 0.3], O = [0, 0] }
+shapes.nose = { disc = "A", radius = 0.05 }
+shapes.hub = { disc = "O", radius = 0.05 }
 [bodies.b]
 markers = { B = [-0.15, 0.25, -0.7] }
 [bodies.c]
 markers = { C = [0.05, -0.3, 1.1] }
+shapes.bore = { hole = "C", radius = 0.03 }
+shapes.plate = { disc = "C", radius = 0.04 }
 [joints.cam]
 type = "cam"
 markers = ["a.A", "b.B"]
@@ -50,6 +54,8 @@ turn = { coordinate = "angle", markers = ["a.A", "b.B"] }
 lean = { coordinate = "angle", markers = ["ground.G", "c.C"] }
 near = { coordinate = "y", markers = ["a.A", "c.C"], axes = "b.B" }
 far = { coordinate = "distance", markers = ["ground.G", "a.O"] }
+noses = { coordinate = "clearance", shapes = ["a.nose", "c.plate"] }
+pin = { coordinate = "clearance", shapes = ["c.bore", "a.hub"] }
 "#;
 
 /// Generalized coordinates of the three bodies, and the angle of a cam's contact.
@@ -142,6 +148,9 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
         samples.push(Box::new(FlatFace { contour, follower }));
     }
     samples_of_curves(mechanism, &id, &mut samples);
+    let clearances = mechanism.measures.iter().map(|measure| &measure.coordinate);
+    let clearances = clearances.filter(|coordinate| coordinate.shapes().is_some());
+    samples.extend(clearances.map(of_coordinate));
     for joint in &mechanism.joints {
         if let JointKind::Coupling(equation) = &joint.kind {
             samples.push(Box::new(coupling(equation)));

@@ -15,6 +15,7 @@
 
 use super::sub_step::SubStep;
 use crate::kinematics::certificate::StepBounds;
+use crate::kinematics::constraint::Clearance;
 use crate::kinematics::error::Error;
 use crate::kinematics::plan::compiled_mechanism::{CompiledMechanism, LimitOwner, StopRelation};
 use crate::kinematics::state::State;
@@ -358,6 +359,15 @@ pub(in crate::kinematics) fn check_pose(
     for watched in &compiled.stops {
         let value = watched.relation.value(&state.at);
         let [least, most] = watched.limits(mechanism, &state.pose.parameters);
+        let any: &dyn std::any::Any = &*watched.relation;
+        if let Some(clearance) = any.downcast_ref::<Clearance>()
+            && clearance.is_crossed(mechanism, &state.at, &state.pose.parameters)
+        {
+            return Err(Error::BeyondStop {
+                limit: watched.describe(mechanism, false, least),
+                value: value.min(0.0),
+            });
+        }
         let play = 2.0 * STRAIGHT * watched.scale(state.at.size()).max(value.abs());
         for (is_max, limit, gap) in [(false, least, value - least), (true, most, most - value)] {
             if gap < -play {

@@ -1,7 +1,7 @@
 //! Certified sub-steps of a path, and the watch over them.
 
 use crate::kinematics::certificate::StepBounds;
-use crate::kinematics::constraint::Constraint;
+use crate::kinematics::constraint::{Clearance, Constraint};
 use crate::kinematics::plan::Watched;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
@@ -34,7 +34,8 @@ impl SubStep<'_> {
     }
 
     /// Bounds the deviation of a relation, with these unknowns, from the straight line between its values
-    /// at both ends; infinite without a bound. A relation that is a distance names it, for the places at
+    /// at both ends; infinite without a bound. Of a clearance it bounds how far this lies below the line. A
+    /// relation that is a distance names it, for the places at
     /// which it is not smooth. Where drivers have second derivatives, the deviation at a part σ of the
     /// sub-step is at most 4 σ (1 − σ) of this. Allocates nothing.
     pub fn deviation(
@@ -56,6 +57,20 @@ impl SubStep<'_> {
             from: &state.pose.q,
             pivots: &compiled.plan.pivots,
         };
+        let any: &dyn std::any::Any = relation;
+        if let Some(clearance) = any.downcast_ref::<Clearance>() {
+            let chord = |column: usize| state.at.coordinate(column) - state.pose.q[column];
+            let off = |column| bounds.deviation(column, &compiled.plan.pivots);
+            let moving = clearance
+                .shapes
+                .map(|shape| bounds.parameters.core_motion(shape));
+            let deviation = clearance.deviation(&state.at, chord, off, moving);
+            return if deviation.is_nan() {
+                f64::INFINITY
+            } else {
+                deviation
+            };
+        }
         let deviation = if bounds.parameters.moving {
             watched.deviation_while_moving(bounds, 0.0)
         } else {

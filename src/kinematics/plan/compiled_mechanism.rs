@@ -96,7 +96,9 @@ impl StopRelation {
         value: f64,
     ) -> Box<StopLimit> {
         Box::new(match self.owner {
-            LimitOwner::Stop(stop) => StopLimit::new(&mechanism.stops[stop], is_max, value),
+            LimitOwner::Stop(stop) => {
+                StopLimit::new(mechanism, &mechanism.stops[stop], is_max, value)
+            }
             LimitOwner::Curve(joint, _) => {
                 StopLimit::of_curve(&mechanism.joints[joint].name, is_max, value)
             }

@@ -7,16 +7,12 @@ use crate::mechanism::names::NameTable;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Shape, Unit};
 
-use super::context::Context;
+use super::context::{BODY_QUANTITIES, Context};
 use super::kind::{Array, Entry, Fields, Item, Kind, Named, Text, schema};
 use super::kind::{Described, NAME};
 use super::number::{ANGLE, LENGTH, NUMBER, Number, POINT, Quantity};
 use super::shape::{AnyShape, DENSITY, THICKNESS};
 use super::table::{Field, Keys, table};
-
-/// Names of a body's own quantities, which no marker may have.
-pub(super) const BODY_QUANTITIES: [&str; 9] =
-    ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
 
 table! {
     /// The body that never moves; its frame is the global one.
@@ -150,7 +146,7 @@ impl<'a> Context<'a> {
         };
         self.declare_markers(None, ground, &mut markers);
         match &keys {
-            Some(keys) => self.shapes(None, &keys.shapes, &[None, None], &mut shapes),
+            Some(keys) => self.read_shapes(None, &keys.shapes, &[None, None], &mut shapes),
             None => self.shape_names.push(None),
         }
         let mut bodies = Vec::new();
@@ -194,7 +190,7 @@ impl<'a> Context<'a> {
             |field: &Field<Quantity>| field.value.as_ref().map(|size| size.expression.clone());
         let plate = [&keys.thickness, &keys.density].map(expression);
         let first = shapes.len();
-        self.shapes(Some(id), &keys.shapes, &plate, shapes);
+        self.read_shapes(Some(id), &keys.shapes, &plate, shapes);
         let is_weighed = shapes[first..].iter().any(|shape| shape.weight.is_some());
         self.check_weight(&keys, is_weighed);
         let of_mass = [("inertia", &keys.inertia.key), ("center", &keys.center.key)];

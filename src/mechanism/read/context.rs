@@ -21,12 +21,25 @@ const MAX_PROBLEMS: usize = 100;
 /// Name of the body that never moves.
 pub(super) const GROUND: &str = "ground";
 
+/// Names of a body's own quantities, which no marker and no shape may have.
+pub(super) const BODY_QUANTITIES: [&str; 9] =
+    ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
+
 /// Length of the file, for the comparison with all others.
 pub(super) struct Length {
     /// Magnitude \[m\], positive.
     pub(super) size: f64,
     /// Place, `None` if an expression makes it.
     pub(super) bare: Option<Span>,
+}
+
+/// A shape as references see it.
+pub(super) struct KnownShape {
+    pub(super) place: Span,
+    pub(super) carrier: Option<BodyId>,
+    /// Its first marker, `None` if it could not be read.
+    pub(super) marker: Option<MarkerId>,
+    pub(super) is_round: bool,
 }
 
 /// State of reading one file.
@@ -65,8 +78,8 @@ pub(super) struct Context<'a> {
     pub(super) carriers: Vec<Option<BodyId>>,
     /// Shapes of ground, then of each body; `None` where they cannot be read.
     pub(super) shape_names: Vec<Option<NameTable<'a, ShapeId>>>,
-    /// Place of each shape, and whether it could be read.
-    pub(super) shape_places: Vec<(Span, bool)>,
+    /// Shapes as references see them.
+    pub(super) shapes: Vec<KnownShape>,
     /// Name of the first body, or `ground`, that has a marker of this name.
     pub(super) owners: HashMap<&'a str, &'a str>,
     /// Inputs by their places.
@@ -113,7 +126,7 @@ impl<'a> Context<'a> {
             markers: Vec::new(),
             carriers: Vec::new(),
             shape_names: Vec::new(),
-            shape_places: Vec::new(),
+            shapes: Vec::new(),
             owners: HashMap::new(),
             inputs: NameTable::new(),
             inputs_used: Vec::new(),

@@ -1,12 +1,12 @@
 //! Coordinates between two markers, and the constraints and measures made of them.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::{Constraint, Coordinate, CoordinateKind, MarkerId, Measure};
+use crate::mechanism::{Constraint, Coordinate, CoordinateKind, MarkerId, Measure, ShapeId};
 
 use super::context::Context;
 use super::kind::{Entry, Text, Word, word_here};
 use super::number::{Limit, NUMBER, Quantity};
-use super::reference::{MARKERS, MarkerName, MarkerPair};
+use super::reference::{MARKERS, MarkerName, MarkerPair, SHAPES, ShapePair};
 use super::table::table;
 
 table! {
@@ -20,6 +20,16 @@ table! {
         markers: [MarkerId; 2] = MarkerPair,
         /// Marker on whose axes x or y is measured; marker i if left out.
         axes: MarkerId = MarkerName,
+    }
+
+    /// The least distance of the outlines of two shapes.
+    struct ClearanceKeys<'a> {
+        /// Quantity measured: the clearance, negative as far as the shapes overlap with their radii.
+        #[required("\"clearance\"")]
+        coordinate: () = CLEARANCE,
+        /// Two shapes on different bodies.
+        #[required(SHAPES)]
+        shapes: [ShapeId; 2] = ShapePair,
     }
 
     /// A coordinate held at a value.
@@ -50,7 +60,12 @@ const COORDINATE: Word<CoordinateKind> = Word::new("coordinate", code::UNKNOWN_C
 .with_synonyms(|text| match text.to_ascii_lowercase().as_str() {
     "rotation" | "phi" => Some(word_here("angle")),
     "length" => Some(word_here("distance")),
+    "clearance" => Some("only a measure is a clearance: `[measures]`".to_owned()),
     _ => None,
+});
+
+const CLEARANCE: Word<()> = Word::new("coordinate", code::UNKNOWN_COORDINATE, || {
+    vec![("clearance", ())]
 });
 
 impl<'a> Context<'a> {
@@ -69,12 +84,34 @@ impl<'a> Context<'a> {
     }
 
     pub(super) fn measure(&mut self, entry: Entry<'a>) -> Option<Measure> {
-        let (coordinate, keys) =
-            self.entry::<(CoordinateKeys<'a>, MeasureKeys<'a>)>(entry, "measure")?;
+        let table = entry.value.get_ref().as_table();
+        let kind = table.and_then(|table| table.get("coordinate"));
+        let is_clearance = kind.and_then(|kind| kind.get_ref().as_str()) == Some("clearance");
+        let (coordinate, keys) = if is_clearance {
+            let (own, keys) =
+                self.entry::<(ClearanceKeys<'a>, MeasureKeys<'a>)>(entry, "measure")?;
+            own.coordinate.value?;
+            (self.clearance(own.shapes.value?), keys)
+        } else {
+            let (own, keys) =
+                self.entry::<(CoordinateKeys<'a>, MeasureKeys<'a>)>(entry, "measure")?;
+            (self.coordinate(own), keys)
+        };
         Some(Measure {
             name: entry.name().to_owned(),
             description: keys.description.value.unwrap_or_default(),
-            coordinate: self.coordinate(coordinate)?,
+            coordinate: coordinate?,
+        })
+    }
+
+    /// Returns the clearance of two shapes, `None` if one of them could not be read.
+    pub(super) fn clearance(&self, shapes: [ShapeId; 2]) -> Option<Coordinate> {
+        let [from, to] = shapes.map(|shape| self.shapes[shape.index()].marker);
+        Some(Coordinate {
+            kind: CoordinateKind::Clearance(shapes),
+            from: from?,
+            to: to?,
+            axes: from?,
         })
     }
 

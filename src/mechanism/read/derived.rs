@@ -7,7 +7,7 @@ use crate::mechanism::syntax::Value;
 use crate::mechanism::{DerivedMeasure, ForceQuantity, Mechanism, Unit, Variable};
 
 use super::context::Context;
-use super::coordinate::{CoordinateKeys, MeasureKeys};
+use super::coordinate::{ClearanceKeys, CoordinateKeys, MeasureKeys};
 use super::kind::{AnyOf, Entry, Item, Kind, Text, schema};
 use super::number::NUMBER;
 use super::parameter::SiUnit;
@@ -41,8 +41,10 @@ impl<'a> Kind<'a> for Unread {
 }
 
 /// A measure: a coordinate, or computed from others.
-pub(super) type AnyMeasure =
-    AnyOf<(CoordinateKeys<'static>, MeasureKeys<'static>), DerivedKeys<'static>>;
+pub(super) type AnyMeasure = AnyOf<
+    (CoordinateKeys<'static>, MeasureKeys<'static>),
+    AnyOf<(ClearanceKeys<'static>, MeasureKeys<'static>), DerivedKeys<'static>>,
+>;
 
 /// Returns whether a measure is computed from others.
 pub(super) fn is_derived(entry: &Entry<'_>) -> bool {

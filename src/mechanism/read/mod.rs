@@ -15,6 +15,7 @@
 //! unreadable value leaves one error; what refers to it adds no other.
 
 mod body;
+mod contact;
 mod context;
 mod coordinate;
 mod derived;
@@ -142,12 +143,14 @@ impl<'a> Context<'a> {
         let measures = self.each(&root.measures, measure);
         let sections = [&root.drivers, &root.freedoms, &root.measures];
         self.declare_coordinates(sections, &drivers, &measures);
-        let stops = self.each(&root.stops, Self::stop);
+        let mut stops = self.each(&root.stops, Self::stop);
         let mut forces = self.forces(&root.forces, &drivers, &measures, simulation.start);
         // A rigid stop exerts nothing where all is driven: the motion ends there.
         let exerts = |stop: &Stop| has_freedoms || !stop.is_rigid();
+        let contacts = self.contacts(root.contacts.items());
         let of_stops = stops.iter().enumerate().filter(|(_, stop)| exerts(stop));
         forces.extend(of_stops.map(|(index, stop)| stop.force(index)));
+        stops.extend(contacts);
         let joints = self.each(&root.joints, Self::joint);
         // Indices are known once all joints have been read.
         let all = (joints.len() == root.joints.items().len()).then_some(&*joints);
@@ -191,6 +194,7 @@ impl<'a> Context<'a> {
         if !self.failed {
             self.warn_of_large_lengths();
             self.check_freedoms(&mechanism, root.freedoms.items());
+            self.check_contacts(&mechanism, root.contacts.items());
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
             self.warn_of_uncalled(root.functions.items());
             self.warn_of_unused_inputs(root.inputs.items());

@@ -81,6 +81,7 @@ impl<'a> Context<'a> {
             ("measure", &root.measures),
             ("force", &root.forces),
             ("stop", &root.stops),
+            ("contact", &root.contacts),
             ("friction", &root.friction),
         ];
         let entries = sections

@@ -119,7 +119,7 @@ pub(super) fn help(
         }
         _ => {}
     }
-    let carries_markers = has("estimate") || known == ["markers"];
+    let carries_markers = has("estimate") || known == ["markers", "shapes"];
     let is_point =
         matches!(value.get_ref(), DeValue::Array(items) if (2..=3).contains(&items.len()));
     if let Some(key) = key_for(word, known) {

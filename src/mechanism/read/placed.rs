@@ -96,6 +96,12 @@ impl<'a> Context<'a> {
     ) -> Option<Coordinate> {
         let mut all = self.coordinates.iter();
         if let Some((_, coordinate)) = all.find(|(own, _)| *own == name) {
+            if coordinate.is_some_and(|coordinate| coordinate.shapes().is_some()) {
+                let message = format!("{} is a clearance, which is measured only", quoted(name));
+                self.error(code::UNKNOWN_COORDINATE, span.clone(), message)
+                    .suggest("`[contacts]` keep two shapes apart");
+                return None;
+            }
             return *coordinate;
         }
         if self.computed.contains(&name) {

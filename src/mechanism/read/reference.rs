@@ -4,7 +4,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::names;
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
-use crate::mechanism::{BodyId, MarkerId, Span};
+use crate::mechanism::{BodyId, MarkerId, ShapeId, Span};
 
 use super::context::{Context, GROUND};
 use super::kind::NAME;
@@ -78,6 +78,73 @@ impl<'a> Kind<'a> for MarkerPair {
             return None;
         }
         Some(markers)
+    }
+
+    schema! { Self::ARRAY.schema() }
+}
+
+/// Example of `shapes`, for help where they are missing.
+pub(super) const SHAPES: &str = "[\"pawl.nose\", \"wheel.rim\"]";
+
+/// Shape, written `body.shape`.
+pub(super) struct ShapeName;
+
+impl<'a> Kind<'a> for ShapeName {
+    type Value = ShapeId;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<ShapeId> {
+        let text = context.text(item.value)?;
+        let Some((body_name, shape_name)) = text.split_once('.') else {
+            let message = format!("no shape {}", quoted(text));
+            context
+                .error(code::SHAPE, item.span(), message)
+                .suggest("a shape is written `body.shape`");
+            return None;
+        };
+        let part = |part| syntax::part_span(context.source, item.span(), text, part);
+        let body_span = part(0..body_name.len());
+        let shape_span = part(body_name.len() + 1..text.len());
+        let table = if body_name == GROUND {
+            0
+        } else {
+            context.body_at(body_name, body_span, &[GROUND])?.index() + 1
+        };
+        // Shapes that cannot be read have been reported.
+        let table = context.shape_names[table].as_ref()?;
+        let shape = table.get(shape_name);
+        if shape.is_none() {
+            let message = format!("no shape {} on {}", quoted(shape_name), quoted(body_name));
+            let help = table.help(shape_name);
+            context.error(code::SHAPE, shape_span, message).help = help;
+        }
+        shape
+    }
+
+    schema! {{ "$ref": "#/$defs/marker" }}
+}
+
+/// Shapes of two different bodies.
+pub(super) struct ShapePair;
+
+impl ShapePair {
+    const ARRAY: Array<ShapeName, 2> = Array::new(SHAPES, [ShapeName, ShapeName]);
+}
+
+impl<'a> Kind<'a> for ShapePair {
+    type Value = [ShapeId; 2];
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<[ShapeId; 2]> {
+        let shapes = Self::ARRAY.read(context, item)?;
+        let [carrier, other] = shapes.map(|shape| context.shapes[shape.index()].carrier);
+        if carrier == other {
+            let (subject, body) = (&item.fields.subject, quoted(context.carrier_name(carrier)));
+            let message = format!("both shapes of {subject} are on {body}");
+            context
+                .error(code::SAME_BODY, item.span(), message)
+                .suggest("the two are on different bodies, of which one may be `ground`");
+            return None;
+        }
+        Some(shapes)
     }
 
     schema! { Self::ARRAY.schema() }

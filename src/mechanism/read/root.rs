@@ -9,6 +9,7 @@ use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
 
 use super::body::{BodyKeys, GroundKeys};
+use super::contact::ContactKeys;
 use super::context::Context;
 use super::coordinate::{ConstraintKeys, CoordinateKeys};
 use super::derived::AnyMeasure;
@@ -69,6 +70,8 @@ table! {
         forces: Vec<Entry<'a>> = Named(PhantomData::<AnyForce>),
         /// Limits of coordinates.
         stops: Vec<Entry<'a>> = Named(PhantomData::<AnyStop>),
+        /// Shapes that do not enter each other.
+        contacts: Vec<Entry<'a>> = Named(PhantomData::<ContactKeys<'static>>),
         /// Friction along coordinates.
         friction: Vec<Entry<'a>> = Named(PhantomData::<AnyFriction>),
         /// Outputs of the FMU.

@@ -9,8 +9,7 @@ use crate::mechanism::{
     ShapeForm, ShapeId, Span,
 };
 
-use super::body::BODY_QUANTITIES;
-use super::context::Context;
+use super::context::{BODY_QUANTITIES, Context, KnownShape};
 use super::kind::{AnyOf, Described, Entry, Fields, Item, Kind, NAME, Text, schema};
 use super::number::{LENGTH, NUMBER, Number, Quantity, RATIO};
 use super::table::{Field, table};
@@ -205,7 +204,7 @@ impl<'a> Context<'a> {
 
     /// Reads the shapes of a body, of ground if it is `None`, after its markers. `owner` is its name as the
     /// subject of sentences.
-    pub(super) fn shapes(
+    pub(super) fn read_shapes(
         &mut self,
         carrier: Option<BodyId>,
         entries: &Field<Vec<Entry<'a>>>,
@@ -238,7 +237,12 @@ impl<'a> Context<'a> {
             }
             known.insert(name, ShapeId(shapes.len()));
             let read = self.shape(*entry, carrier, plate);
-            self.shape_places.push((entry.key.span(), read.is_some()));
+            self.shapes.push(KnownShape {
+                place: entry.key.span(),
+                carrier,
+                marker: read.as_ref().and_then(|shape| shape.markers().next()),
+                is_round: read.as_ref().is_none_or(Shape::is_round),
+            });
             // A shape that cannot be read keeps its place, so that names find it.
             shapes.push(read.unwrap_or_else(|| Shape {
                 name: name.to_owned(),
@@ -353,7 +357,7 @@ impl<'a> Context<'a> {
         [thickness, density]: &Plate,
     ) -> Option<Option<[Expression; 2]>> {
         let of = |field: &Field<Quantity>, body: &Option<Expression>| match &field.key {
-            Some(_) => Some(field.value.as_ref()?.expression.clone()).map(Some),
+            Some(_) => Some(Some(field.value.as_ref()?.expression.clone())),
             None => Some(body.clone()),
         };
         let (thickness, density) = (of(&own.thickness, thickness)?, of(&own.density, density)?);
@@ -416,8 +420,8 @@ impl<'a> Context<'a> {
         let fault = fault.or_else(|| mechanism.crossing_fault(&parameters));
         let Some(fault) = fault else { return };
         let own = (0..mechanism.shapes.len()).map(ShapeId);
-        let place = own.zip(&self.shape_places).find_map(|(id, (span, _))| {
-            (mechanism.shape_path(id) == fault.shape).then(|| span.clone())
+        let place = own.zip(&self.shapes).find_map(|(id, known)| {
+            (mechanism.shape_path(id) == fault.shape).then(|| known.place.clone())
         });
         let problem = Diagnostic::error(code::SHAPE, fault.to_string());
         let problem = match place {

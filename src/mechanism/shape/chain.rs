@@ -33,11 +33,16 @@ pub struct Piece<N> {
     pub arc: Option<([N; 2], N, N)>,
 }
 
+/// Place of each corner.
+type Corners<'a, N> = &'a dyn Fn(usize) -> [N; 2];
+
+/// Bulge of the edge from each corner to the next, `None` for a straight one.
+type Bulges<'a, N> = &'a dyn Fn(usize) -> Option<N>;
+
 /// Corners and edges of a shape, with the numbers that round them.
 pub(super) struct Chain<'a, N> {
-    corner: &'a dyn Fn(usize) -> [N; 2],
-    /// Bulge of the edge from a corner to the next.
-    bulge: &'a dyn Fn(usize) -> Option<N>,
+    corner: Corners<'a, N>,
+    bulge: Bulges<'a, N>,
     pub(super) count: usize,
     pub(super) is_closed: bool,
     /// Radius that rounds convex corners from inside, `None` for sharp ones.
@@ -71,6 +76,7 @@ pub(super) enum Turn {
 /// Corner with what a fillet and a rim make of it.
 #[derive(Clone, Copy)]
 pub(super) struct Corner<N> {
+    pub(super) at: [N; 2],
     pub(super) turn: Turn,
     /// Ends of the adjacent edges that are moved in by the fillet; one place but at a hollow corner.
     pub(super) core: [[N; 2]; 2],
@@ -137,6 +143,7 @@ impl<N: Number> Chain<'_, N> {
                 None => at,
             };
             return Corner {
+                at,
                 turn: Turn::Smooth,
                 core: [core; 2],
                 rim: [moved(core, normal, self.radius()); 2],
@@ -161,6 +168,7 @@ impl<N: Number> Chain<'_, N> {
                     .rim
                     .map_or(at, |rim| meet(at, normals, curvatures, rim));
                 Corner {
+                    at,
                     turn,
                     core,
                     rim: [rim; 2],
@@ -170,6 +178,7 @@ impl<N: Number> Chain<'_, N> {
             Turn::Smooth => {
                 let rim = self.rim.map_or(at, |rim| moved(at, normals[0], rim));
                 Corner {
+                    at,
                     turn,
                     core,
                     rim: [rim; 2],
@@ -185,6 +194,7 @@ impl<N: Number> Chain<'_, N> {
                     None => normals,
                 };
                 Corner {
+                    at,
                     turn,
                     core,
                     rim: normals.map(|normal| moved(core[0], normal, radius)),
@@ -286,11 +296,10 @@ impl Shape {
                 let backwards = |k: usize| point(count - 1 - k);
                 let back_bulge = |k: usize| bulge((2 * count - 2 - k) % count).map(|bulge| -bulge);
                 let is_backwards = doubled_area(count, &point, &bulge) < 0.0;
-                let (corner, bulge): (&dyn Fn(usize) -> [N; 2], &dyn Fn(usize) -> Option<N>) =
-                    match is_backwards {
-                        true => (&backwards, &back_bulge),
-                        false => (&point, &bulge),
-                    };
+                let (corner, bulge): (Corners<'_, N>, Bulges<'_, N>) = match is_backwards {
+                    true => (&backwards, &back_bulge),
+                    false => (&point, &bulge),
+                };
                 Some(look(&Chain {
                     corner,
                     bulge,
@@ -305,7 +314,7 @@ impl Shape {
 
     /// Shows `visit` the pieces of the boundary, counter-clockwise round the area. A wall has its surface
     /// and the way back at its depth.
-    pub(super) fn boundary<N: Number>(
+    pub(in crate::mechanism) fn boundary<N: Number>(
         &self,
         given: &Given<'_, N>,
         visit: &mut dyn FnMut(Piece<N>),

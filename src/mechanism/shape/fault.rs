@@ -5,20 +5,19 @@ use std::fmt;
 
 use super::chain::{Chain, Turn, cross, dot, sub};
 use super::{Given, Shape, ShapeForm};
-use crate::mechanism::{Mechanism, ParameterId, ShapeId};
 
 /// Shape without a proper outline for the values of its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShapeFault {
     /// Name of the shape with its body's.
     pub shape: String,
-    /// What is wrong.
+    /// Kind of the fault.
     pub kind: ShapeFaultKind,
     /// Name of the marker where it is, if it is at one.
     pub marker: Option<String>,
 }
 
-/// What is wrong with the outline of a shape.
+/// Kind of fault in the outline of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeFaultKind {
     /// A radius, a fillet or a depth is not positive, or negative where it may be zero.
@@ -74,7 +73,10 @@ impl fmt::Display for ShapeFault {
 impl Shape {
     /// Returns what is wrong with its sizes or at one of its corners, by the place of the corner among its
     /// markers. Allocates nothing.
-    pub(super) fn fault(&self, given: &Given<'_, f64>) -> Option<(ShapeFaultKind, Option<usize>)> {
+    pub(in crate::mechanism) fn fault(
+        &self,
+        given: &Given<'_, f64>,
+    ) -> Option<(ShapeFaultKind, Option<usize>)> {
         let is_wrong = |size: &crate::mechanism::Expression, may_be_zero: bool| {
             let size = (given.number)(size);
             !(size > 0.0 || may_be_zero && size == 0.0)
@@ -97,10 +99,27 @@ impl Shape {
             // Corners are counted counter-clockwise there.
             let own = self
                 .markers()
-                .position(|id| (given.point)(id) == chain.corner_at(corner));
+                .position(|id| is_same((given.point)(id), chain.corner_at(corner)));
             Some((kind, own))
         })
         .flatten()
+    }
+}
+
+impl Shape {
+    /// Returns whether the boundary crosses itself. Arcs are taken as chords.
+    pub(in crate::mechanism) fn crosses_itself(&self, given: &Given<'_, f64>) -> bool {
+        crosses(&flattened(self, given))
+    }
+
+    /// Returns whether a disc lies within the boundary.
+    pub(in crate::mechanism) fn encloses(
+        &self,
+        given: &Given<'_, f64>,
+        center: [f64; 2],
+        radius: f64,
+    ) -> bool {
+        self.contains(given, center) && distance(self, given, center) >= radius
     }
 }
 
@@ -109,7 +128,7 @@ impl Chain<'_, f64> {
     fn fault(&self, may_turn_back: bool) -> Option<(ShapeFaultKind, usize)> {
         for k in 0..self.edges() {
             let edge = self.edge(k);
-            if edge.ends[0] == edge.ends[1] {
+            if is_same(edge.ends[0], edge.ends[1]) {
                 return Some((ShapeFaultKind::NoEdge, k));
             }
         }
@@ -135,45 +154,6 @@ impl Chain<'_, f64> {
                 if !is_left {
                     return Some((ShapeFaultKind::Short, k));
                 }
-            }
-        }
-        None
-    }
-}
-
-impl Mechanism {
-    /// Returns the fault of the first shape whose boundary crosses itself, or of a hole that is not within
-    /// a plate, for parameters for which no shape has a [fault](Self::shape_fault).
-    #[must_use]
-    pub fn crossing_fault(&self, parameters: &[f64]) -> Option<ShapeFault> {
-        let parameter = |id: ParameterId| parameters[id.index()];
-        let fault = |id: ShapeId, kind| {
-            Some(ShapeFault {
-                shape: self.shape_path(id),
-                kind,
-                marker: None,
-            })
-        };
-        for id in (0..self.shapes.len()).map(ShapeId) {
-            let shape = &self.shapes[id.index()];
-            let lines = self.on_bodies(&parameter, |given| flattened(shape, given));
-            if crosses(&lines) {
-                return fault(id, ShapeFaultKind::Crossing);
-            }
-            let ShapeForm::Hole { marker, radius } = &shape.form else {
-                continue;
-            };
-            let is_within = self.on_bodies(&parameter, |given| {
-                let (center, radius) = ((given.point)(*marker), (given.number)(radius));
-                let mut plates = self
-                    .shapes_of(shape.body)
-                    .filter(|(_, plate)| plate.is_plate());
-                plates.any(|(_, plate)| {
-                    plate.contains(given, center) && distance(plate, given, center) >= radius
-                })
-            });
-            if !is_within {
-                return fault(id, ShapeFaultKind::HoleOutside);
             }
         }
         None
@@ -247,6 +227,10 @@ fn distance(shape: &Shape, given: &Given<'_, f64>, point: [f64; 2]) -> f64 {
         }
     });
     least
+}
+
+fn is_same(a: [f64; 2], b: [f64; 2]) -> bool {
+    sub(a, b).iter().all(|difference| *difference == 0.0)
 }
 
 fn length([x, y]: [f64; 2]) -> f64 {

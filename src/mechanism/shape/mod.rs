@@ -3,6 +3,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `chain` | corners and edges of a shape, and what a fillet or a rim makes of them |
+//! | `core` | [`Core`]: the places and edges round which a shape has its radius |
 //! | `fault` | [`ShapeFault`]: outlines that do not close round an area |
 //! | `weight` | area, centre and second moment; mass, centre and inertia of a body |
 //!
@@ -11,18 +12,19 @@
 //! that its flats stay where they are. A wall is likewise its surface moved in by its depth.
 
 mod chain;
+mod core;
 mod fault;
 mod weight;
 
 #[cfg(test)]
 mod tests;
 
+pub use self::core::{Core, Feature, FeatureKind};
 pub use chain::Piece;
 pub use fault::{ShapeFault, ShapeFaultKind};
 pub use weight::{Section, Weight};
 
-use super::number::Number;
-use super::{BodyId, Expression, MarkerId, Mechanism, ParameterId, ShapeId};
+use super::{BodyId, Expression, MarkerId};
 
 /// Most markers of a shape.
 pub(crate) const MOST_CORNERS: usize = 256;
@@ -172,61 +174,4 @@ pub(crate) struct Given<'a, N> {
     pub(crate) point: &'a dyn Fn(MarkerId) -> [N; 2],
     /// Returns the value of a number.
     pub(crate) number: &'a dyn Fn(&Expression) -> N,
-}
-
-impl Mechanism {
-    /// Returns a shape's name with its body's: `pawl.nose`, `ground.floor`.
-    #[must_use]
-    pub fn shape_path(&self, id: ShapeId) -> String {
-        let shape = &self.shapes[id.index()];
-        let body = shape
-            .body
-            .map_or("ground", |body| &self.bodies[body.index()].name);
-        format!("{body}.{}", shape.name)
-    }
-
-    /// Returns the shapes of a body, of ground for `None`.
-    pub fn shapes_of(&self, body: Option<BodyId>) -> impl Iterator<Item = (ShapeId, &Shape)> {
-        let all = (0..).map(ShapeId).zip(&self.shapes);
-        all.filter(move |(_, shape)| shape.body == body)
-    }
-
-    /// Shows `look` the places of markers on their bodies and the values of numbers for these parameters.
-    fn on_bodies<N: Number, T>(
-        &self,
-        parameter: &impl Fn(ParameterId) -> N,
-        look: impl FnOnce(&Given<'_, N>) -> T,
-    ) -> T {
-        let number = |expression: &Expression| expression.evaluate(parameter, N::constant(0.0));
-        let point = |id: MarkerId| self.markers[id.index()].position.each_ref().map(number);
-        look(&Given {
-            point: &point,
-            number: &number,
-        })
-    }
-
-    /// Shows `visit` the pieces of a shape's boundary, counter-clockwise round its area, in the frame of
-    /// its body \[m\].
-    pub fn boundary(&self, shape: &Shape, parameters: &[f64], visit: &mut dyn FnMut(Piece<f64>)) {
-        let parameter = |id: ParameterId| parameters[id.index()];
-        self.on_bodies(&parameter, |given| shape.boundary(given, visit));
-    }
-
-    /// Returns the fault of the first shape without a proper outline for these parameters. Allocates
-    /// nothing unless there is one.
-    #[must_use]
-    pub fn shape_fault(&self, parameters: &[f64]) -> Option<ShapeFault> {
-        let parameter = |id: ParameterId| parameters[id.index()];
-        let faults = (0..self.shapes.len()).map(ShapeId).find_map(|id| {
-            let shape = &self.shapes[id.index()];
-            let (kind, corner) = self.on_bodies(&parameter, |given| shape.fault(given))?;
-            let at = corner.and_then(|corner| shape.markers().nth(corner));
-            Some(ShapeFault {
-                shape: self.shape_path(id),
-                kind,
-                marker: at.map(|id| self.markers[id.index()].name.clone()),
-            })
-        });
-        faults
-    }
 }

@@ -56,7 +56,9 @@ impl ForcePlace {
                 CoordinateKind::Angle => Way::Turn,
                 CoordinateKind::X => Way::Axis(axes),
                 CoordinateKind::Y => Way::Axis(axes.turned_to(axes.angle + FRAC_PI_2)),
-                CoordinateKind::Distance => Way::From(anchor(coordinate.from)),
+                CoordinateKind::Distance | CoordinateKind::Clearance(_) => {
+                    Way::From(anchor(coordinate.from))
+                }
             };
             (anchor(coordinate.to), Size::Along(quantity, way))
         };

@@ -2,6 +2,7 @@
 
 pub(in crate::cli) mod forces;
 pub(in crate::cli) mod json;
+mod shapes;
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
@@ -24,8 +25,8 @@ use biela::kinematics::{
     self, AssemblyMode, Modes, NeededPlay, Origin, Path, Rates, Solver, System, offer_start,
 };
 use biela::mechanism::{
-    BodyId, CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit,
-    fixed, rounded, shown,
+    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
+    rounded, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -34,7 +35,7 @@ use biela::mechanism::{
 /// assembled pose at the drivers' start values, how far each body is from its estimate, and the
 /// reciprocal condition of the pose (1 is best, 0 a singular position). If it can close in other
 /// ways too, and has at most 40 bodies, a line says so. It tells the areas of
-/// bodies with shapes, and the masses that follow. With masses or forces it prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. It
+/// bodies with shapes, the masses that follow, and the clearances of contacts. With masses or forces it prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. It
 /// warns of prescribed motions that leave the limits of their drivers, and of joints whose markers
 /// were drawn apart in a mechanism that is drawn in one pose. If the mechanism does not
 /// close, it says whether that is proved, which joints stay open and by how much, and prints the
@@ -51,6 +52,10 @@ pub(in crate::cli) struct Check {
     /// as estimates to paste.
     #[arg(long)]
     modes: bool,
+    /// Print the least clearance of each pair of shapes on different bodies over the range of each
+    /// driver, whether they have a contact or not.
+    #[arg(long)]
+    clearances: bool,
     /// The format of the report: text, or JSON in SI units with all errors of the file.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -90,6 +95,9 @@ impl Check {
                 "--estimates is of --format text: the pose is in the JSON".to_owned(),
             ));
         }
+if self.clearances {
+            return Err(Error::Usage("--clearances is of --format text".to_owned()));
+        }
         let (report, outcome) = json::report(&self.file, &self.settings, self.modes);
         print(&format!("{report:#}\n"))?;
         outcome
@@ -125,6 +133,9 @@ impl Check {
         for excursion in excursions(&solver) {
             Message::Warning(excursion).show();
         }
+        for overlap in shapes::overlapping_contacts(mechanism, &mechanism.default_parameters()) {
+            Message::Warning(overlap).show();
+        }
         let free = mechanism
             .has_freedoms()
             .then(|| AtRest::start(input.source.name(), input.assemble()?, Signals::default()));
@@ -133,7 +144,9 @@ impl Check {
             solver.restore(at.motion.pose());
         }
         print(&describe_pose(&mut solver))?;
-        print(&describe_shapes(mechanism, &solver.pose().parameters))?;
+        let parameters = &solver.pose().parameters;
+        print(&shapes::describe_areas(mechanism, parameters))?;
+        print(&shapes::describe_contacts(&solver))?;
         input.check_rest(&mut solver)?;
         if let Some(at) = free {
             print(&describe_free_motion(&mut at?)?)?;
@@ -145,6 +158,9 @@ impl Check {
         if !self.modes && mechanism.bodies.len() <= MOST_BODIES_SEARCHED {
             let modes = solver.modes().map_err(|error| input.error(error))?;
             print(&mention_modes(&solver, &modes))?;
+        }
+        if self.clearances {
+            print(&shapes::describe_clearances(&input)?)?;
         }
         if self.estimates {
             print(&estimates(solver.mechanism(), &solver.pose().q))?;
@@ -254,41 +270,6 @@ fn describe_free_motion(at: &mut AtRest) -> Result<String, Error> {
         }
     }
     Ok(out)
-}
-
-/// Tells the area of each body with shapes, and the mass that these give it.
-fn describe_shapes(mechanism: &Mechanism, parameters: &[f64]) -> String {
-    let mut out = String::new();
-    for (body, id) in mechanism.bodies.iter().zip((0..).map(BodyId)) {
-        let Some(section) = mechanism.section_of(id, parameters) else {
-            continue;
-        };
-        if out.is_empty() {
-            out += "\nshapes\n";
-        }
-        let _ = write!(
-            out,
-            "  {}: area {} m2",
-            body.name,
-            shown(rounded(section.area, 9))
-        );
-        let weight = mechanism.weight_at(id, parameters);
-        if let Some(weight) = weight.filter(|_| body.is_weighed) {
-            let [mass, x, y, inertia] = [
-                weight.mass,
-                weight.center[0],
-                weight.center[1],
-                weight.inertia,
-            ]
-            .map(|number| shown(rounded(number, 9)));
-            let _ = write!(
-                out,
-                ", mass {mass} kg, center [{x}, {y}] m, inertia {inertia} kg.m2"
-            );
-        }
-        out.push('\n');
-    }
-    out
 }
 
 /// Returns the number of equations of each joint.

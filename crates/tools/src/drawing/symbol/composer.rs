@@ -193,7 +193,7 @@ impl<'a> Composer<'a> {
         match coordinate.kind {
             CoordinateKind::X => Some(axes),
             CoordinateKind::Y => Some(axes.turned_to(axes.angle + FRAC_PI_2)),
-            CoordinateKind::Angle | CoordinateKind::Distance => None,
+            CoordinateKind::Angle | CoordinateKind::Distance | CoordinateKind::Clearance(_) => None,
         }
     }
 
@@ -223,6 +223,8 @@ impl<'a> Composer<'a> {
             CoordinateKind::X | CoordinateKind::Y if is_elastic || is_damped => {
                 spring::compose(self, ends, axis, [is_elastic, is_damped]);
             }
+            // A clearance has no force.
+            CoordinateKind::Clearance(_) => {}
             CoordinateKind::Angle | CoordinateKind::X | CoordinateKind::Y => {
                 load::compose_along(self, &force.name, ends, axis, law);
             }
