@@ -95,7 +95,7 @@ impl Check {
                 "--estimates is of --format text: the pose is in the JSON".to_owned(),
             ));
         }
-if self.clearances {
+        if self.clearances {
             return Err(Error::Usage("--clearances is of --format text".to_owned()));
         }
         let (report, outcome) = json::report(&self.file, &self.settings, self.modes);
@@ -246,9 +246,15 @@ fn describe_free_motion(at: &mut AtRest) -> Result<String, Error> {
         false => "coordinates that are exchanged near dead points",
     };
     let _ = writeln!(out, "  states in model exchange: {states}");
-    if !at.is_balanced() {
-        return Ok(out);
+    if at.is_balanced() {
+        out += &oscillations(at)?;
     }
+    Ok(out)
+}
+
+/// Tells how the freedoms move near the equilibrium at which they are, a line for each root.
+pub(super) fn oscillations(at: &mut AtRest) -> Result<String, Error> {
+    let mut out = String::new();
     for root in at.linearize(&[])?.a.complex_eigenvalues().iter() {
         let size = root.re.hypot(root.im);
         if root.im > 0.0 {

@@ -1,5 +1,7 @@
 //! `biela report`
 
+mod motion;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -35,8 +37,8 @@ const MOST_BODIES: usize = 60;
 ///
 /// The page has the picture with dimensions, the degrees of freedom, the pose at the start, for each
 /// driver its range with dead points, extremes of the measures, transmission angle and largest
-/// forces, charts over the ranges, the forces at rest, the parameters, and the file itself. It is
-/// one HTML file that needs no other and no network, and holds no script.
+/// forces, charts over the ranges, the forces at rest, the parameters, and the file itself. What moves
+/// by itself is shown over time, with its events, its equilibrium and the frequencies there. It is one HTML file that needs no other and no network, and holds no script.
 ///
 /// The same file gives the same bytes.
 #[derive(Args, Debug)]
@@ -62,7 +64,8 @@ impl Report {
             .unwrap_or_else(|| PathBuf::from(format!("{name}_report.html")));
         InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&path)])?;
         let mut solver = self.conditions.solver_at_start(&input)?;
-        let page = page(&input, &mut solver)?;
+        let motion = motion::motion(&input, &self.conditions)?;
+        let page = page(&input, &mut solver, &motion)?;
         write(&path, page.as_bytes())?;
         tell_written(&path);
         Ok(())
@@ -70,7 +73,7 @@ impl Report {
 }
 
 /// Returns the report of a mechanism at the solver's pose.
-fn page(input: &Input, solver: &mut Solver) -> Result<String, Error> {
+fn page(input: &Input, solver: &mut Solver, motion: &str) -> Result<String, Error> {
     let mechanism = Arc::clone(solver.mechanism());
     let diagram = Diagram {
         dimensions: true,
@@ -93,6 +96,7 @@ fn page(input: &Input, solver: &mut Solver) -> Result<String, Error> {
             ("freedom", &freedom(solver)),
             ("pose", &pose(solver)),
             ("ranges", &ranges(solver)),
+            ("motion", motion),
             ("forces", &forces(input, solver)?),
             ("parameters", &parameters),
             ("file", &escape(input.source.text())),

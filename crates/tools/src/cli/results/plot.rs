@@ -204,7 +204,15 @@ impl Recorder for Plot {
         Ok(())
     }
 
-    fn finish(mut self: Box<Self>, motion: &Motion, events: &[Event]) -> Result<(), Error> {
+    fn finish(self: Box<Self>, motion: &Motion, events: &[Event]) -> Result<(), Error> {
+        let (path, format) = (self.path.clone(), self.format);
+        format.write_chart(&path, &self.sheet(motion.mechanism(), events))
+    }
+}
+
+impl Plot {
+    /// Returns the picture of the rows. What stays constant is left out, if the user has named nothing.
+    pub(in crate::cli) fn sheet(mut self, mechanism: &Mechanism, events: &[Event]) -> Sheet {
         if self.notes_omission {
             if let Some([shown, moving]) = self.leave_out() {
                 let note = format!(
@@ -214,9 +222,7 @@ impl Recorder for Plot {
             }
             self.leave_out_constants();
         }
-        let (path, format) = (self.path.clone(), self.format);
-        let sheet = Sheet::chart(&self.chart(motion.mechanism(), events));
-        format.write_chart(&path, &sheet)
+        Sheet::chart(&self.chart(mechanism, events))
     }
 }
 

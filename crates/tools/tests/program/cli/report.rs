@@ -61,3 +61,23 @@ fn conditions_hold_in_a_report() {
     assert!(page.contains("from 57.2957795131 deg"));
     assert!(page.contains("<td data-what=\"Value\">0.05</td>"));
 }
+
+/// A rod of length l on a pivot swings about hanging down with the frequency sqrt(3 g/(2 l))/(2 pi).
+#[test]
+fn a_report_of_free_motion_has_its_chart_its_events_and_its_frequencies() {
+    let page = report("pendulum_free", &[]);
+    let frequency = (3.0 * 9.81 / (2.0 * 0.5_f64)).sqrt() / std::f64::consts::TAU;
+    let expected = format!("swings at {frequency:.4}");
+    for part in [
+        "<h2>Motion</h2>",
+        "<h3>Equilibrium</h3>",
+        &expected,
+        "swing = 0.000000000 rad",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    let page = report("servo_arm", &[]);
+    assert!(page.contains("impact at stop ends with"), "events are listed");
+    // Nothing moves by itself.
+    assert!(!report("four_bar", &[]).contains("<h2>Motion</h2>"));
+}
