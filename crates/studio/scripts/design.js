@@ -90,14 +90,15 @@ export class Design {
   }
 
   look(event) {
+    // Over a picture its lines lead the hand, not the grid.
+    this.isFree = event.shiftKey || event.altKey || Boolean(this.studio.background.image);
     const chosen = TOOLS[this.tool];
     const last = this.found[this.found.length - 1];
-    const origin = chosen.typed && last ? this.sheet.settled(last.at) : null;
+    const origin = chosen.typed && last ? last.at : null;
     const found = findAt(this.sheet, this.sketch, this.sheet.placeOf(event), {
       kind: event.pointerType,
       origin: this.drag?.origin ?? origin,
-      // Over a picture its lines lead the hand, not the grid.
-      free: event.shiftKey || event.altKey || Boolean(this.studio.background.image),
+      free: this.isFree,
       without: this.drag?.without ?? [],
       things: this.tool === "select" && !this.drag,
     });
@@ -361,8 +362,12 @@ export class Design {
   gestureTo(found) {
     const { drag } = this;
     const onto = drag.point && found.point ? found.point.markers[0] : null;
+    const way = [0, 1].map((k) => found.at[k] - drag.from[k]);
+    // A body is gripped anywhere; its points stay as round as they are.
+    const { step } = this.sheet;
+    const fine = drag.body && !this.isFree ? (x) => Number((Math.round(x / step) * step).toPrecision(12)) : (x) => x;
     /** @type {[number, number]} */
-    const by = [found.at[0] - drag.from[0], found.at[1] - drag.from[1]];
+    const by = [fine(way[0]), fine(way[1])];
     return onto ? { kind: "join", marker: drag.markers[0], onto } : { kind: "shift", markers: drag.markers, by };
   }
 
@@ -444,7 +449,7 @@ export class Design {
 
   takeTyped() {
     const { unit } = this.studio;
-    const from = this.sheet.settled(this.found[this.found.length - 1].at);
+    const from = this.found[this.found.length - 1].at;
     const to = this.over?.at ?? [from[0] + 1, from[1]];
     const ahead = [to[0] - from[0], to[1] - from[1]];
     const length = this.long.value.trim() === "" ? Math.hypot(...ahead) : lengthOf(this.long.value, unit);

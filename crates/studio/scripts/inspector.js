@@ -1,7 +1,7 @@
 // @ts-check
 // The numbers of what is selected, and what can be done with it.
 
-import { add, say } from "./controls.js";
+import { add, say, shown } from "./controls.js";
 import { TOOLS, icon } from "./tools.js";
 
 export class Inspector {
@@ -79,13 +79,14 @@ export class Inspector {
       list.addEventListener("change", () => put(list.value));
       return;
     }
-    const field = add(row, "input", { type: "text", value: plain(value ?? ""), autocomplete: "off", spellcheck: false });
+    const brief = short(plain(value ?? ""));
+    const field = add(row, "input", { type: "text", value: brief, title: plain(value ?? ""), autocomplete: "off", spellcheck: false });
     add(row, "small", { textContent: shown && shown !== value ? shown : "" });
     const take = () => {
       const text = field.value.trim();
       const isText = type === "text" && text !== "";
       const length = text.match(/^([-+]?[0-9.]+)\s*(mm|cm|inch|deg)$/);
-      put(length ? `"${length[1]}*${length[2]}"` : isText ? JSON.stringify(text) : text === plain(value ?? "") ? value : text);
+      put(length ? `"${length[1]}*${length[2]}"` : isText ? JSON.stringify(text) : text === brief ? value : text);
     };
     field.addEventListener("change", take);
     field.addEventListener("keydown", (event) => {
@@ -95,6 +96,11 @@ export class Inspector {
       }
     });
   }
+}
+
+/** Returns a text with numbers of few digits: a field that nobody changes keeps all of them. */
+function short(text) {
+  return text.replace(/\d+\.\d{8,}/g, (number) => String(shown(Number(number))));
 }
 
 /** Returns a TOML value without the quotes of a string. */

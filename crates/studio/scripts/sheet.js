@@ -43,12 +43,9 @@ export class Sheet {
     return Math.max(0, Math.min(9, Math.ceil(Math.log10(this.scale) + 0.5)));
   }
 
-  /** Returns a point [m] as it was drawn, whatever the lengths of its body were rounded to. */
-  settled(at) {
-    return at.map((x) => {
-      const drawn = Number(x.toFixed(this.decimals));
-      return Math.abs(x - drawn) < 2 * 10 ** -(this.decimals + 1) ? drawn : x;
-    });
+  /** Returns a length [m] as fine as the sheet shows it. */
+  rounded(length) {
+    return Number(length.toFixed(this.decimals));
   }
 
   /** Distance of the lines of the grid [m], to which points snap. */

@@ -36,7 +36,7 @@ export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, fr
   const bar = nearest(
     [...bars, ...rods].map(({ body, name, from, to }) => {
       const foot = footOn(sheet.toScreen(from), sheet.toScreen(to), place);
-      return { body, name, at: sheet.toPoint(foot), far: distance(foot, place) };
+      return { body, name, at: alongFrom(from, to, sheet.rounded(distance(sheet.toPoint(foot), from))), far: distance(foot, place) };
     }),
     NEAR_BAR * near,
   );
@@ -45,7 +45,7 @@ export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, fr
     return { at: bar.at, ...found, guides: [] };
   }
   if (free) {
-    return { at: sheet.toPoint(place), guides: [] };
+    return { at: sheet.toPoint(place).map((x) => sheet.rounded(x)), guides: [] };
   }
   const there = drawn(sheet, others, place, origin);
   // The grid may lead to a point that is further away than the pointer finds one.
@@ -70,6 +70,13 @@ function footOn([x, y], [u, v], [a, b]) {
   const square = dx * dx + dy * dy;
   const part = square > 0 ? Math.max(0, Math.min(1, ((a - x) * dx + (b - y) * dy) / square)) : 0;
   return [x + part * dx, y + part * dy];
+}
+
+/** Returns the point at a length from a point on the way to another. */
+function alongFrom([x, y], to, length) {
+  const long = distance([x, y], to);
+  const part = long > 0 ? Math.min(1, length / long) : 0;
+  return [x + part * (to[0] - x), y + part * (to[1] - y)];
 }
 
 /** Returns the place to which grid, directions and the levels of other points draw. */

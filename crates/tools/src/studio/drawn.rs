@@ -9,6 +9,9 @@ use biela::mechanism::{BodyId, Coordinate, Diagnostic, MarkerId, Mechanism, Seve
 
 /// Part of the drawing's size within which two points are one.
 const SAME: f64 = 1e-6;
+/// Part of the drawing's size to which a pose is found at a dead point, where rounding leaves its square
+/// root: 1.5e-8, and a few times as much after several bodies. Halved, numbers end in noise there.
+const POSE: f64 = 1e-7;
 
 /// A mechanism at the pose at which its file starts it.
 #[derive(Debug)]
@@ -119,6 +122,34 @@ impl Drawn {
         outside(self.frame(body), self.inside(marker))
     }
 
+    /// Returns a coordinate of a point \[m\] without the noise of the pose.
+    pub(super) fn settled(&self, value: f64) -> f64 {
+        neat(value, POSE * self.size())
+    }
+
+    /// Returns the value of a coordinate \[m or rad\] without the noise of the pose.
+    pub(super) fn settled_value(&self, value: f64, is_angle: bool) -> f64 {
+        match is_angle {
+            true => neat(value.to_degrees(), POSE.to_degrees()).to_radians(),
+            false => self.settled(value),
+        }
+    }
+
+    /// Returns the global point of a marker \[m\] without the noise of the pose.
+    pub(super) fn point(&self, marker: MarkerId) -> [f64; 2] {
+        let [x, y, _] = self.place(marker);
+        [x, y].map(|x| self.settled(x))
+    }
+
+    /// Returns the frame of a body without the noise of the pose.
+    pub(super) fn settled_frame(&self, [x, y, phi]: [f64; 3]) -> [f64; 3] {
+        [
+            self.settled(x),
+            self.settled(y),
+            self.settled_value(phi, true),
+        ]
+    }
+
     /// Returns a marker by its path, such as `crank.A`.
     pub(super) fn marker(&self, path: &str) -> Option<MarkerId> {
         let mechanism = self.mechanism.as_ref()?;
@@ -197,6 +228,18 @@ pub(super) fn inside([x, y, phi]: [f64; 3], at: [f64; 2]) -> [f64; 2] {
     let (sin, cos) = phi.sin_cos();
     let [dx, dy] = [at[0] - x, at[1] - y];
     [cos * dx + sin * dy, cos * dy - sin * dx]
+}
+
+/// Returns the shortest decimal within a distance of a number, which is its own where a decimal within it
+/// would be chance.
+pub(super) fn neat(value: f64, slack: f64) -> f64 {
+    /// Least distance of decimals over the one within which they are found.
+    const RARE: f64 = 1e4;
+    let scales = (0..15).map(|decimals| 10.0_f64.powi(decimals));
+    let rare = scales.take_while(|scale| RARE * slack * scale <= 1.0);
+    let mut decimals = rare.map(|scale| (value * scale).round() / scale);
+    let found = decimals.find(|decimal| (decimal - value).abs() <= slack);
+    found.unwrap_or(value) + 0.0
 }
 
 /// Returns the angle in (−π, π] that differs by whole turns.

@@ -91,7 +91,7 @@ fn points(drawn: &Drawn, mechanism: &Mechanism, mut left: Vec<MarkerId>) -> Vec<
         let joints = mechanism.joints.iter().filter(is_here);
         let on_ground = |marker: &MarkerId| mechanism.markers[marker.index()].body.is_none();
         points.push(json!({
-            "at": [x, y],
+            "at": drawn.point(first),
             "angle": angle,
             "markers": together.iter().map(|m| mechanism.marker_path(*m)).collect::<Vec<_>>(),
             "joints": joints.map(|joint| &joint.name).collect::<Vec<_>>(),

@@ -14,7 +14,7 @@ mod places;
 mod section;
 mod text;
 
-pub use number::{NumberInUnit, degrees, estimate, in_unit, largest_coordinate};
+pub use number::{NumberInUnit, degrees, estimate, in_unit, largest_coordinate, written};
 pub use places::WrittenText;
 pub use section::{in_braces, in_lines, sections};
 pub use text::TomlText;

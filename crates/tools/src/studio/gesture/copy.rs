@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use super::super::drawn::within_turn;
 use super::super::reference::references;
 use super::{Editing, Refusal};
-use crate::write::degrees;
 use crate::write::{TomlText, in_braces, in_lines};
 use biela::mechanism::{Body, BodyId, Joint, MarkerId, Mechanism};
 
@@ -253,9 +252,7 @@ fn stem(name: &str) -> &str {
 fn copy_body(editing: &mut Editing, body: &Body, way: Way, frame: [f64; 3], name: &str) {
     let own = ["bodies", &*body.name];
     let mut markers = Vec::new();
-    let [x, y] = [frame[0], frame[1]].map(|x| editing.length(x));
-    let phi = degrees(frame[2], super::ANGLE_DECIMALS);
-    let mut lines = vec![format!("estimate = [{x}, {y}, {phi}]")];
+    let mut lines = vec![format!("estimate = {}", editing.estimate(frame))];
     for key in editing.text.keys(&own) {
         let path = [own[0], own[1], &key];
         match &*key {

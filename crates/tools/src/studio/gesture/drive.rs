@@ -28,8 +28,11 @@ pub(super) fn freedom(editing: &mut Editing, name: &str) -> Result<(), Refusal> 
 fn start(editing: &mut Editing, section: &str, joint: &str) -> Result<(), Refusal> {
     let (coordinate, word) = coordinate(editing, joint)?;
     let keys = editing.coordinate_keys(coordinate)?;
-    let start = editing.drawn.value(coordinate);
-    let start = editing.value(start, coordinate.kind.is_angle());
+    let is_angle = coordinate.kind.is_angle();
+    let start = editing
+        .drawn
+        .settled_value(editing.drawn.value(coordinate), is_angle);
+    let start = editing.value(start, is_angle);
     let name = editing.names.new_name(&word);
     let value = format!("{{ {keys}, start = {start} }}");
     editing.text.set(&[section, &name], &value);

@@ -29,10 +29,10 @@ pub(super) fn join(
         )
         .into());
     }
-    let [from, to] = [marker, onto].map(|id| editing.drawn.place(id));
+    let [from, to] = [marker, onto].map(|id| editing.drawn.point(id));
     let by = [to[0] - from[0], to[1] - from[1]];
     // Points that meet already keep their bodies as they are.
-    if by.iter().any(|part| editing.rounded(*part).abs() > 0.0) {
+    if f64::hypot(by[0], by[1]) > editing.same() {
         move_points(editing, &[marker], by, through)?;
     }
     editing.join(marker_name(path), "revolute", [onto_path, path]);

@@ -126,7 +126,7 @@ impl Bar {
 
     /// Writes the centre.
     fn center(&self, editing: &Editing) -> String {
-        let [x, y] = self.middle.map(|part| editing.length(part));
+        let [x, y] = self.middle.map(|part| editing.usual(part));
         format!("[{x}, {y}]")
     }
 }

@@ -50,17 +50,17 @@ mod trace;
 mod wheel;
 mod wheels;
 
-use super::drawn::{Drawn, inside};
+use super::drawn::{Drawn, inside, neat, outside};
 use super::names::Names;
 use super::request::{Follower, Gesture, Onto, Target, Through, WheelPair};
-use crate::write::degrees;
-use crate::write::{TomlText, in_braces, in_lines};
+use crate::write::{TomlText, in_braces, in_lines, in_unit, written};
 use biela::mechanism::{
     Body, Coordinate, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source, shortest,
 };
 
-/// Decimals of angles \[deg\].
-const ANGLE_DECIMALS: usize = 3;
+/// Part of a number, and of the lengths from which it follows, within which it is the same to rounding:
+/// some turns of frames, each of which rounds a few times.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// The reason why a gesture changes nothing, for the reader.
 #[derive(Clone, Debug, PartialEq)]
@@ -212,18 +212,18 @@ impl<'a> Editing<'a> {
         problems.into_iter().filter(is_error).collect()
     }
 
-    /// Returns the global point of a target. A marker's is the one that was drawn, whatever its lengths
-    /// were rounded to.
+    /// Returns the global point of a target, without the noise of the pose.
     pub(super) fn settled(&self, target: &Target) -> Result<[f64; 2], Refusal> {
-        let Onto::Marker(path) = &target.onto else {
-            return Ok(target.at);
-        };
-        let [x, y, _] = self.drawn.place(self.marker(path)?);
-        let slack = 2.0 * 10.0_f64.powi(-(self.decimals as i32) - 1);
-        Ok([x, y].map(|x| {
-            let drawn = self.rounded(x);
-            if (x - drawn).abs() < slack { drawn } else { x }
-        }))
+        match &target.onto {
+            Onto::Marker(path) => Ok(self.drawn.point(self.marker(path)?)),
+            Onto::Body(body) => {
+                let frame = self.frame(body)?;
+                let [x, y] = inside(frame, target.at).map(|x| self.drawn.settled(x));
+                let [x, y, _] = outside(frame, [x, y, 0.0]);
+                Ok([x, y])
+            }
+            Onto::Ground | Onto::Sheet => Ok(target.at),
+        }
     }
 
     /// Returns the mechanism that is drawn.
@@ -274,9 +274,20 @@ impl<'a> Editing<'a> {
         Ok(self.drawn.frame(Some(id)))
     }
 
-    /// Writes a length \[m\]: finer than points are, so that the ends of a bar are where they were
-    /// drawn.
+    /// Writes a length \[m\] to rounding, so that what closes on the sheet closes in the file: the
+    /// shortest decimal that is the same to rounding, or all digits.
     pub(super) fn length(&self, value: f64) -> String {
+        written(self.exact(value, 1.0))
+    }
+
+    /// Returns a length \[m\] in a unit, short where that is the same to rounding.
+    fn exact(&self, value: f64, unit: f64) -> f64 {
+        let scale = self.drawn.size() + value.abs();
+        neat(value / unit, ROUNDING * scale / unit)
+    }
+
+    /// Writes a length \[m\] on which nothing else depends, a little finer than the sheet shows it.
+    pub(super) fn usual(&self, value: f64) -> String {
         shortest(value, self.decimals + 1)
     }
 
@@ -285,9 +296,14 @@ impl<'a> Editing<'a> {
         shortest(value, self.decimals).parse().unwrap_or(value)
     }
 
-    /// Writes an angle \[rad\].
+    /// Writes an angle within half a turn \[rad\].
     pub(super) fn angle(value: f64) -> String {
-        degrees(super::drawn::within_turn(value), ANGLE_DECIMALS)
+        Self::turns(super::drawn::within_turn(value))
+    }
+
+    /// Writes an angle, which may count turns \[rad\], to rounding.
+    pub(super) fn turns(value: f64) -> String {
+        in_unit(written(exact_degrees(value)), "deg")
     }
 
     /// Writes a value of a coordinate \[m or rad\].
@@ -309,9 +325,10 @@ impl<'a> Editing<'a> {
     }
 
     /// Writes an estimate.
-    pub(super) fn estimate(&self, [x, y, phi]: [f64; 3]) -> String {
+    pub(super) fn estimate(&self, frame: [f64; 3]) -> String {
+        let [x, y, phi] = self.drawn.settled_frame(frame);
         let [x, y] = [x, y].map(|x| self.length(x));
-        format!("[{x}, {y}, {}]", Self::angle(phi))
+        format!("[{x}, {y}, {}]", Self::turns(phi))
     }
 
     /// Adds a marker to a body or to ground, in its frame; returns its path.
@@ -404,6 +421,12 @@ impl<'a> Editing<'a> {
     pub(super) fn same(&self) -> f64 {
         self.drawn.same()
     }
+}
+
+/// Returns an angle \[rad\] in degrees, short where that is the same to rounding.
+fn exact_degrees(value: f64) -> f64 {
+    let degrees = value.to_degrees();
+    neat(degrees, ROUNDING * (360.0 + degrees.abs()))
 }
 
 /// Returns the last part of a marker's path.

@@ -13,7 +13,7 @@ pub(super) fn pivot(editing: &mut Editing, path: &str) -> Result<(), Refusal> {
     {
         return Err(format!("`{path}` is fixed to ground already").into());
     }
-    let [x, y, _] = editing.drawn.place(marker);
+    let [x, y] = editing.drawn.point(marker);
     let wanted = marker_name(path);
     let is_taken = editing.text.has(&["ground", "markers", wanted]);
     let letter = match is_taken {

@@ -13,7 +13,6 @@ pub(super) fn rack(
     contact: [f64; 2],
 ) -> Result<(), Refusal> {
     let centre = Centre::of(editing, target)?;
-    let contact = contact.map(|x| editing.rounded(x));
     let way = [0, 1].map(|k| contact[k] - centre.at[k]);
     let radius = editing.length(f64::hypot(way[0], way[1]));
     if radius == "0" {

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::super::drawn::within_turn;
-use super::super::drawn::{Drawn, inside, outside};
+use super::super::drawn::{Drawn, inside, neat, outside};
 use super::mass::followed;
-use super::{Editing, Refusal, Through};
-use crate::write::NumberInUnit;
-use biela::mechanism::{BodyId, DriverSource, MarkerId, Mechanism, shortest};
+use super::{Editing, ROUNDING, Refusal, Through, exact_degrees};
+use crate::write::{NumberInUnit, written};
+use biela::mechanism::{BodyId, DriverSource, MarkerId, Mechanism};
 
 /// Change of a number below which it stays as it is \[m or rad\].
 pub(super) const UNCHANGED: f64 = 1e-9;
@@ -85,8 +85,7 @@ pub(super) fn shift(
     if markers.is_empty() {
         return Err("no point is to be moved".into());
     }
-    // Points that are dragged stay as fine as the sheet shows them.
-    move_rounded(editing, &markers, by, through, true)
+    move_points(editing, &markers, by, through)
 }
 
 /// Moves points with all that is pinned to them. A bar gets another length and direction, a plate
@@ -97,7 +96,17 @@ pub(super) fn move_points(
     by: [f64; 2],
     through: Option<Through>,
 ) -> Result<(), Refusal> {
-    move_rounded(editing, markers, by, through, false)
+    let mechanism = editing.mechanism()?;
+    let mut moved: BTreeSet<MarkerId> = BTreeSet::new();
+    for marker in markers {
+        moved.extend(editing.drawn.pinned_to(*marker));
+    }
+    let meant = meant(editing, mechanism, &moved, by);
+    let mut parts = Parts::default();
+    parts.take(editing, mechanism, &meant, through)?;
+    set_starts(editing, &mut parts, mechanism, &meant);
+    parts.write(editing);
+    Ok(())
 }
 
 /// Moves a point on its body alone: what is pinned to it follows where the mechanism closes, and all
@@ -109,29 +118,9 @@ pub(super) fn move_alone(
     through: Option<Through>,
 ) -> Result<(), Refusal> {
     let mechanism = editing.mechanism()?;
-    let meant = meant(editing, mechanism, &BTreeSet::from([marker]), by, false);
+    let meant = meant(editing, mechanism, &BTreeSet::from([marker]), by);
     let mut parts = Parts::default();
     parts.take(editing, mechanism, &meant, through)?;
-    parts.write(editing);
-    Ok(())
-}
-
-fn move_rounded(
-    editing: &mut Editing,
-    markers: &[MarkerId],
-    by: [f64; 2],
-    through: Option<Through>,
-    is_rounded: bool,
-) -> Result<(), Refusal> {
-    let mechanism = editing.mechanism()?;
-    let mut moved: BTreeSet<MarkerId> = BTreeSet::new();
-    for marker in markers {
-        moved.extend(editing.drawn.pinned_to(*marker));
-    }
-    let meant = meant(editing, mechanism, &moved, by, is_rounded);
-    let mut parts = Parts::default();
-    parts.take(editing, mechanism, &meant, through)?;
-    set_starts(editing, &mut parts, mechanism, &meant);
     parts.write(editing);
     Ok(())
 }
@@ -142,7 +131,6 @@ fn meant(
     mechanism: &Mechanism,
     moved: &BTreeSet<MarkerId>,
     by: [f64; 2],
-    is_rounded: bool,
 ) -> Meant {
     let drawn = editing.drawn;
     let mut meant = Meant {
@@ -150,16 +138,10 @@ fn meant(
         inside: BTreeMap::new(),
     };
     let there = |marker: MarkerId| {
-        let [x, y, _] = drawn.place(marker);
-        let way = if moved.contains(&marker) {
-            by
-        } else {
-            [0.0; 2]
-        };
-        let place = [x + way[0], y + way[1]];
-        match is_rounded {
-            true => place.map(|x| editing.rounded(x)),
-            false => place,
+        let [x, y] = drawn.point(marker);
+        match moved.contains(&marker) {
+            true => [x + by[0], y + by[1]].map(|x| drawn.settled(x)),
+            false => [x, y],
         }
     };
     for marker in moved {
@@ -273,7 +255,7 @@ fn set_estimate(
         parts.added.push((name.clone(), editing.estimate(frame)));
         return;
     }
-    for (index, value) in frame.into_iter().enumerate() {
+    for (index, value) in editing.drawn.settled_frame(frame).into_iter().enumerate() {
         let Some(place) = editing.text.element(&path, index) else {
             continue;
         };
@@ -313,7 +295,8 @@ fn set_starts(editing: &Editing, parts: &mut Parts, mechanism: &Mechanism, meant
         }
         if let Some(place) = editing.text.place(&path)
             && let old = &editing.text.as_str()[place.clone()]
-            && let Some(new) = in_place_of(editing, old, start + change, is_angle)
+            && let value = drawn.settled_value(start + change, is_angle)
+            && let Some(new) = in_place_of(editing, old, value, is_angle)
         {
             parts.replace(place, new);
         }
@@ -368,17 +351,15 @@ fn in_place_of(editing: &Editing, old: &str, value: f64, is_angle: bool) -> Opti
         let old = old.trim().replace('_', "").parse::<f64>().ok()?;
         // An angle that was zero says nothing about its unit.
         return Some(match is_angle && old != 0.0 {
-            true => format!("{}", biela::mechanism::rounded(value, 6)),
+            true => written(neat(value, ROUNDING)),
             false => editing.value(value, is_angle),
         });
     };
-    let factor = own.factor();
-    let decimals = match is_angle {
-        true => super::ANGLE_DECIMALS,
-        // As fine as lengths in metres are written.
-        false => (editing.decimals as i32 + 1 + factor.log10().round() as i32).max(0) as usize,
+    let number = match is_angle && own.factor() == 1.0_f64.to_radians() {
+        true => exact_degrees(value),
+        false => editing.exact(value, own.factor()),
     };
-    Some(own.write(&shortest(value / factor, decimals)))
+    Some(own.write(&written(number)))
 }
 
 /// Returns the one parameter of an expression, with the value that gives the expression another one;

@@ -3,19 +3,8 @@
 use super::super::drawn::inside;
 use super::{Editing, Onto, Refusal, Target, marker_name};
 
-/// Directions to which a guide snaps \[rad\], and how near: points are drawn to a fraction of a
-/// pixel.
-const DIRECTIONS: f64 = std::f64::consts::PI / 12.0;
-const NEAR: f64 = 2e-3;
-
 /// Adds a slider on a guide of ground at an angle \[rad\]; at a marker it is pinned to that.
 pub(super) fn slider(editing: &mut Editing, target: &Target, angle: f64) -> Result<(), Refusal> {
-    let direction = DIRECTIONS * (angle / DIRECTIONS).round();
-    let angle = if (angle - direction).abs() < NEAR {
-        direction
-    } else {
-        angle
-    };
     let other = match &target.onto {
         Onto::Sheet | Onto::Ground => None,
         _ => Some(editing.marker_at(target)?),
@@ -46,7 +35,7 @@ pub(super) fn slot(editing: &mut Editing, path: &str, body: &str) -> Result<(), 
     if editing.body_of(marker)? == body {
         return Err(format!("`{path}` is a point of `{body}` itself").into());
     }
-    let [x, y, _] = editing.drawn.place(marker);
+    let [x, y] = editing.drawn.point(marker);
     let [u, v] = inside(editing.frame(body)?, [x, y]);
     let mechanism = editing.mechanism()?;
     let id = mechanism.body_id(body);

@@ -20,7 +20,7 @@ const ANGULAR: f64 = std::f64::consts::TAU * FREQUENCY;
 pub(super) fn spring(editing: &mut Editing, points: &[Target]) -> Result<(), Refusal> {
     let (ends, long) = ends(editing, "spring", points)?;
     let stiffness = rounded(lighter(editing, &ends) * ANGULAR * ANGULAR, DIGITS);
-    let free = editing.length(long);
+    let free = editing.usual(long);
     let keys = format!("stiffness = {stiffness}, free = {free}");
     add(editing, "spring", ends, &keys);
     Ok(())

@@ -1,6 +1,6 @@
 //! Stops: limits of a coordinate.
 
-use super::{ANGLE_DECIMALS, Editing, Refusal};
+use super::{Editing, Refusal};
 use crate::write::degrees;
 use biela::mechanism::{Coordinate, CoordinateKind, Mechanism, rounded};
 
@@ -10,7 +10,8 @@ const ANGLE: f64 = std::f64::consts::PI / 6.0;
 const WAY: f64 = 0.25;
 /// Significant digits of a usual limit of a length.
 const DIGITS: usize = 2;
-
+/// Decimals of a limit of an angle \[deg\].
+const ANGLE_DECIMALS: usize = 3;
 /// Significant digits of a value in a message.
 const SHOWN: usize = 4;
 
@@ -101,7 +102,7 @@ fn limits(
     // A limit may be turns away.
     let write = |value: f64| match is_angle {
         true => degrees(value, ANGLE_DECIMALS),
-        false => editing.length(value),
+        false => editing.usual(value),
     };
     let limits = [("min", min), ("max", max)].into_iter();
     let limits = limits.filter_map(|(key, limit)| Some(format!("{key} = {}", write(limit?))));

@@ -71,7 +71,7 @@ impl<'a> Rows<'a> {
                 let label = format!("length {}", self.pair([*from, *to])?);
                 let [a, b] = [*from, *to].map(|id| self.editing.drawn.inside(id));
                 let long = f64::hypot(b[0] - a[0], b[1] - a[1]);
-                let value = self.editing.length(long);
+                let value = self.editing.usual(long);
                 let shown = shown(long, "m");
                 self.read(&label, &value, shown.as_deref(), Some("m"));
             }

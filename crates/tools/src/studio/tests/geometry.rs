@@ -11,7 +11,7 @@ fn ground(x: f64, y: f64) -> Value {
 /// Two bars on ground, apart.
 fn two_bars() -> super::Host {
     let mut host = studio(EMPTY);
-    for (x, end) in [(0.0, [0.05, 0.086_602_54]), (0.4, [0.3, 0.2])] {
+    for (x, end) in [(0.0, [0.05, 0.086_602_540_378_443_87]), (0.4, [0.3, 0.2])] {
         let points = json!([ground(x, 0.0), { "at": end }]);
         act(&mut host, &json!({ "kind": "link", "points": points }));
     }

@@ -7,6 +7,7 @@ use super::host::Host;
 use super::request::Gesture;
 
 mod copies;
+mod exact;
 mod geometry;
 mod inspect;
 mod names;
@@ -130,7 +131,7 @@ fn a_four_bar_is_drawn_in_four_gestures() {
     let marker = |path: &str| json!({ "at": [0, 0], "marker": path });
     let view = act(
         &mut host,
-        &json!({ "kind": "link", "points": [ground(0.0, 0.0), sheet(0.05, 0.086_602_54)] }),
+        &json!({ "kind": "link", "points": [ground(0.0, 0.0), sheet(0.05, 0.086_602_540_378_443_87)] }),
     );
     assert_eq!(state(&view), "undriven");
     act(
