@@ -24,13 +24,14 @@ KEYS = {
 class Drawing:
     """A studio in a browser. Points are in metres."""
 
-    def __init__(self, page, index: Path, folder: Path):
+    def __init__(self, page, index: Path, folder: Path, address: str | None = None):
         self.page = page
+        self.index = index
         self.folder = folder
         self.errors = []
         page.on("pageerror", lambda error: self.errors.append(str(error)))
         page.on("console", lambda line: line.type in ("error", "warning") and self.errors.append(line.text))
-        page.goto(index.as_uri())
+        page.goto(address or index.as_uri())
         page.wait_for_selector(".studio.ready")
 
     def place(self, at):

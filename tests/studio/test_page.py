@@ -89,15 +89,6 @@ def test_a_link_holds_the_mechanism(sheet, chromium, folder, tmp_path):
     context.close()
 
 
-def test_what_was_drawn_last_is_there_again(sheet):
-    crank(sheet)
-    text = sheet.text
-    sheet.page.wait_for_function("() => localStorage.getItem('biela.studio')?.includes('link_2')")
-    sheet.page.reload()
-    sheet.page.wait_for_selector(".studio.ready")
-    assert sheet.text == text
-
-
 def test_a_template_is_opened_and_moves(sheet):
     sheet.open_template("slider_crank")
     sheet.page.locator(".modes button[value=motion]").click()

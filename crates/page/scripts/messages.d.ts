@@ -60,8 +60,11 @@ export type PageRequest =
 // A refusal, under `refused`, has `message`, or asks by `parameter`, `formula` and `value`. A request
 // that cannot be read is answered by `error`.
 export type StudioRequest =
-  // Begins with a file, with the contents of others beside it; answers a view.
-  | { do: "begin"; name: string; text: string; files?: [string, string][]; scale?: number | null }
+  // Begins with a file, with the contents of others beside it, and maybe with the history that its
+  // text had; answers a view.
+  | { do: "begin"; name: string; text: string; files?: [string, string][]; history?: History | null; scale?: number | null }
+  // Answers the `history` of the text, by which another studio begins where this one is.
+  | { do: "history" }
   // Takes a text that was typed, maybe `joined` to the change before; answers a view.
   | { do: "type"; text: string; joined?: boolean; scale?: number | null }
   // Does a gesture with lengths of these decimals, or only shows it; answers a view or a refusal.
@@ -75,6 +78,13 @@ export type StudioRequest =
   // Answers a form of a thing by its name, of a point by its markers' paths, or of the mechanism:
   // `title`, `kind`, `rows` and `actions`; or a refusal.
   | { do: "inspect"; names: string[] };
+
+// The texts to which undo and redo return: each as its change from the one that is left for it, the next
+// one last.
+export type History = { before: Change[]; undone: Change[] };
+
+// A change of a text: begin and end of the bytes that are replaced, and what takes their place.
+export type Change = [number, number, string];
 
 // A gesture, with its name under `kind`. Points are global [m], angles in radians.
 export type Gesture =

@@ -4,7 +4,6 @@ import { add } from "./controls.js";
 import { buttonRow, openWindow } from "./dialogs.js";
 import { lengthOf } from "./units.js";
 
-const KEPT_PICTURE = "biela.studio.picture";
 // Longest side of a picture that this browser keeps [pixels].
 const KEPT_SIDE = 1600;
 
@@ -16,7 +15,7 @@ export class Background {
 
   /** Shows a picture file, so that it fills the sheet; asks for its scale. */
   async open(file) {
-    this.remove();
+    this.close();
     if (!(await this.show(URL.createObjectURL(file)))) {
       this.studio.say(`${file.name} is no picture that this browser shows`);
       return;
@@ -41,7 +40,7 @@ export class Background {
       await this.image.decode();
       return true;
     } catch {
-      this.remove();
+      this.close();
       return false;
     }
   }
@@ -57,17 +56,13 @@ export class Background {
     brush.fillRect(0, 0, canvas.width, canvas.height);
     brush.drawImage(this.image, 0, 0, canvas.width, canvas.height);
     const unit = (this.unit * naturalWidth) / canvas.width;
-    try {
-      const address = canvas.toDataURL("image/jpeg", 0.85);
-      localStorage.setItem(KEPT_PICTURE, JSON.stringify({ address, unit, middle: this.middle }));
-    } catch {
-      // A full or forbidden store: the picture can be opened again.
-    }
+    this.studio.keepPicture({ address: canvas.toDataURL("image/jpeg", 0.85), unit, middle: this.middle });
   }
 
-  /** Shows the picture that was kept, if there is one. */
-  async restore() {
-    const { address, unit, middle } = JSON.parse(localStorage.getItem(KEPT_PICTURE) ?? "{}");
+  /** Shows a picture that was kept, nothing without one. */
+  async restore(kept) {
+    this.close();
+    const { address, unit, middle } = kept ?? {};
     if (address && (await this.show(address))) {
       Object.assign(this, { unit, middle });
       this.look();
@@ -81,15 +76,16 @@ export class Background {
   }
 
   remove() {
+    this.close();
+    this.studio.keepPicture(null);
+  }
+
+  /** Shows it no longer. */
+  close() {
     if (this.image) {
       URL.revokeObjectURL(this.image.src);
       this.image.remove();
       this.image = null;
-    }
-    try {
-      localStorage.removeItem(KEPT_PICTURE);
-    } catch {
-      // A forbidden store keeps none.
     }
   }
 

@@ -2,7 +2,7 @@
 // Design: the pointer and the keys draw, select and move; the solver answers with text and picture.
 
 import { add, shown } from "./controls.js";
-import { askLength, askParameter } from "./dialogs.js";
+import { askLength, askParameter, isMac } from "./dialogs.js";
 import { findAt, pointAt, rodsOf } from "./snap.js";
 import { TOOLS, ownMarker, unfit } from "./tools.js";
 import { DEGREE, angleOf, lengthOf } from "./units.js";
@@ -76,7 +76,10 @@ export class Design {
     });
     place.addEventListener("contextmenu", (event) => {
       event.preventDefault();
-      this.menu(event);
+      // On a Mac Ctrl and a click ask for the menu; a tool takes them for a click on ground.
+      if (!(isMac && event.ctrlKey && this.tool !== "select")) {
+        this.menu(event);
+      }
     });
     place.addEventListener(
       "wheel",

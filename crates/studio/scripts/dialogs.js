@@ -3,6 +3,14 @@
 import { add, say, shown } from "./controls.js";
 import { lengthOf } from "./units.js";
 
+/** Whether the keyboard is that of a Mac, whose Cmd stands for Ctrl. */
+export const isMac = /^(Mac|iP)/.test(navigator.platform);
+
+/** Returns a text with the keys of this keyboard. */
+export function byKeys(text) {
+  return isMac ? text.replaceAll("Ctrl", "Cmd") : text;
+}
+
 /** Opens a window with a title; `fill` fills its form. Returns the value of the button, "" for none. */
 export function openWindow(root, title, fill) {
   return new Promise((done) => {
@@ -115,7 +123,7 @@ export class Menu {
       button.setAttribute("role", "menuitem");
       say(button, item.label);
       if (item.key) {
-        add(button, "kbd", { textContent: item.key });
+        add(button, "kbd", { textContent: byKeys(item.key) });
       }
       if (item.why) {
         say(add(button, "small"), item.why);

@@ -84,7 +84,9 @@ export async function exportFmu(studio) {
 
 /** Saves the mechanism file. */
 export function saveFile(studio) {
+  studio.takeFields();
   save(`${studio.name}.toml`, "application/toml", studio.fileText);
+  studio.saved();
 }
 
 /** Returns what the solver makes of the mechanism: `kind` is `dxf` or `gif`. */

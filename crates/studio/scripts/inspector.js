@@ -82,8 +82,14 @@ export class Inspector {
     const brief = short(plain(value ?? ""));
     const field = add(row, "input", { type: "text", value: brief, title: plain(value ?? ""), autocomplete: "off", spellcheck: false });
     add(row, "small", { textContent: shown && shown !== value ? shown : "" });
+    let taken = brief;
     const take = () => {
       const text = field.value.trim();
+      // Enter, and a field that goes while it has the caret, tell a change twice.
+      if (text === taken) {
+        return;
+      }
+      taken = text;
       const isText = type === "text" && text !== "";
       const length = text.match(/^([-+]?[0-9.]+)\s*(mm|cm|inch|deg)$/);
       put(length ? `"${length[1]}*${length[2]}"` : isText ? JSON.stringify(text) : text === brief ? value : text);

@@ -4,7 +4,9 @@
 import { Background } from "./background.js";
 import { add, say, showPicture } from "./controls.js";
 import { Design } from "./design.js";
-import { Menu, askName, buttonRow, openWindow } from "./dialogs.js";
+import { Menu, askName, buttonRow, byKeys, openWindow } from "./dialogs.js";
+import { Disk } from "./disk.js";
+import { Drafts, newId } from "./drafts.js";
 import { exportFmu, importFile, saveDrawing, saveFile, saveMade, saveVideo, shareLink, showNotes, videoKind } from "./export.js";
 import { Inspector } from "./inspector.js";
 import { fileOfLink } from "./link.js";
@@ -14,7 +16,6 @@ import { Broken, Solver, unpack } from "./solver.js";
 import { TOOLS, icon } from "./tools.js";
 
 const EMPTY = 'format = 1\nname = "mechanism"\n';
-const KEPT = "biela.studio";
 // Pause after which typing goes on as another change [ms].
 const PAUSE = 900;
 // Time for which a message stands [ms].
@@ -39,6 +40,8 @@ class Studio {
     this.schema = null;
     /** @type {Disk | null} */
     this.disk = null;
+    this.server = "";
+    this.drafts = new Drafts();
     const rank = ({ name }) => (EVERYDAY.includes(name) ? EVERYDAY.indexOf(name) : EVERYDAY.length);
     this.templates = [...templates].sort((a, b) => rank(a) - rank(b));
     this.find = (selector) => root.querySelector(selector);
@@ -61,6 +64,9 @@ class Studio {
       redo: () => this.redo(),
       label: "The mechanism's file",
     });
+    for (const element of root.querySelectorAll("[title]")) {
+      element.title = byKeys(element.title);
+    }
     this.connect();
     this.design.take("select");
   }
@@ -80,7 +86,7 @@ class Studio {
 
   /** The mechanism's name, for files. */
   get name() {
-    return this.text.match(/^name\s*=\s*"([A-Za-z0-9_]+)"/m)?.[1] ?? "mechanism";
+    return nameIn(this.text);
   }
 
   /** The thing of a name, for selection; nothing if there is none. */
@@ -127,28 +133,37 @@ class Studio {
     }
   }
 
-  /** Opens a file: a new document. */
+  /**
+   * Opens a file, which becomes another draft, or a draft.
+   * @param {{ name: string, text: string, files?: [string, string][], id?: string, history?: any, changed?: boolean }} file
+   */
   open(file, fit = true) {
+    this.draft = { id: file.id ?? newId(), changed: Boolean(file.changed) };
     this.file = { name: file.name, files: file.files ?? [] };
     // The editor has lines of one kind; the file keeps its own.
     this.lineEnd = file.text.includes("\r\n") ? "\r\n" : "\n";
     this.selection = null;
     this.design.answers.clear();
-    const answer = this.ask({ do: "begin", ...this.file, text: file.text.replaceAll("\r\n", "\n"), scale: this.sheet.scale });
+    const text = file.text.replaceAll("\r\n", "\n");
+    const answer = this.ask({ do: "begin", ...this.file, text, history: file.history, scale: this.sheet.scale });
+    this.savedText = this.draft.changed ? null : file.text;
+    this.claims = true;
     this.show(answer, { anew: true });
+    this.background.restore(this.drafts.picture(this.draft.id)).catch(() => {});
     if (fit) {
       this.fit();
     }
     this.setMode("design");
   }
 
-  /** Asks before a drawing is given up that was changed; true if it may go. */
+  /** Asks before a drawing is given up that is kept nowhere; true if it may go. */
   async mayLeave() {
-    if (!this.view.can_undo) {
+    this.takeFields();
+    if (!this.unsaved) {
       return true;
     }
     const answer = await openWindow(this.root, "Give up this drawing?", (form) => {
-      say(add(form, "p"), `\`${this.name}\` was changed. What is not saved as a file is lost.`);
+      say(add(form, "p"), `\`${this.name}\` was changed, and ${this.unsaved}. What is not saved as a file is lost.`);
       buttonRow(form, ["Keep it", ""], ["Give it up", "leave"]);
     });
     return answer === "leave";
@@ -172,6 +187,9 @@ class Studio {
     }
     this.say("");
     const before = this.view.sketch;
+    if (gesture.kind === "rename") {
+      this.renameSelection(gesture.old, gesture.new);
+    }
     this.show(answer);
     if (gesture.kind === "mass") {
       this.select({ kind: "body", name: gesture.body });
@@ -306,18 +324,143 @@ class Studio {
     this.editor.show(changeOf(before, this.text)[0]);
   }
 
-  /** Keeps the text in this browser, and in the file that `biela studio` serves. */
+  // -- what is kept --------------------------------------------------------------------------
+
+  /** The file on the disk, while it is what is shown. */
+  get ownDisk() {
+    return this.disk?.id === this.draft.id ? this.disk : null;
+  }
+
+  /** Keeps the drawing in this browser, and in the file that `biela studio` serves. */
   keep() {
-    clearTimeout(this.keeping);
-    this.keeping = setTimeout(() => {
-      const { file, text } = this;
-      try {
-        localStorage.setItem(KEPT, JSON.stringify({ ...file, text }));
-      } catch {
-        // A full or forbidden store: the file can still be saved.
+    this.keepDraft();
+    this.ownDisk?.write(this.fileText);
+  }
+
+  keepDraft() {
+    const { draft, file, view, fileText: text } = this;
+    draft.changed ||= view.can_undo || view.can_redo;
+    const { history } = this.ask({ do: "history" });
+    try {
+      const { id } = draft;
+      const disk = this.ownDisk?.written;
+      draft.id = this.drafts.keep({ ...draft, ...file, text, history, disk }, this.server, this.claims);
+      this.claims = false;
+      this.storeTrouble = "";
+      if (draft.id !== id) {
+        this.say(`Another tab has \`${this.name}\`, too: this one is a draft of its own now`);
       }
-      this.disk?.write(this.fileText);
-    }, 400);
+    } catch (error) {
+      const isFull = error.name === "QuotaExceededError";
+      this.storeTrouble = isFull
+        ? "the store of this browser is full: remove drafts, or save it as a file"
+        : "this browser keeps no drafts: save it as a file";
+    }
+    this.tellUnsaved();
+  }
+
+  keepPicture(picture) {
+    try {
+      this.drafts.keepPicture(this.draft.id, picture);
+    } catch {
+      this.say("The store of this browser is full: the picture is gone after a reload");
+    }
+  }
+
+  /** The reason why what is shown is not safe, "" if it is. */
+  get unsaved() {
+    const disk = this.ownDisk;
+    if (disk?.waits && disk.trouble) {
+      return `\`${this.file.name}\` was not written: ${disk.trouble}`;
+    }
+    const isSaved = this.savedText === this.fileText || (disk && !disk.waits);
+    return this.storeTrouble && !isSaved ? this.storeTrouble : "";
+  }
+
+  /** Says what is not safe as long as it is not. */
+  tellUnsaved() {
+    const line = this.find(".unsaved");
+    const { unsaved } = this;
+    if (line.dataset.told !== unsaved) {
+      line.dataset.told = unsaved;
+      say(line.firstElementChild, sentence(unsaved));
+      line.hidden = unsaved === "";
+    }
+    line.querySelector(".choices").hidden = !this.ownDisk?.changed;
+  }
+
+  /** Goes on from the file on the disk, or writes over it. */
+  async settle(writes) {
+    const disk = this.ownDisk;
+    try {
+      const file = await disk.renew();
+      if (writes) {
+        await disk.write(this.fileText);
+      } else {
+        // What was drawn goes on as a draft of its own.
+        const { history } = this.ask({ do: "history" });
+        this.drafts.keep({ ...this.file, id: newId(), changed: true, text: this.fileText, history }, this.server);
+        this.open({ ...file, id: disk.id });
+      }
+    } catch (error) {
+      this.say(`\`biela studio\` does not answer: ${error.message}`);
+    }
+    this.tellUnsaved();
+  }
+
+  /** Opens the file on the disk again. */
+  async backToDisk() {
+    const { id, name, written } = this.disk;
+    if (await this.mayLeave()) {
+      this.open(this.drafts.get(id) ?? { name, text: written, id });
+    }
+  }
+
+  /** Takes what is being typed in a field. */
+  takeFields() {
+    /** @type {HTMLElement} */
+    const field = document.activeElement?.closest(".inspector .field input");
+    field?.blur();
+  }
+
+  /** Notes that the text was saved as a file. */
+  saved() {
+    this.savedText = this.fileText;
+    this.tellUnsaved();
+  }
+
+  /** Opens one of the drafts. */
+  async chooseDraft() {
+    const id = await openWindow(this.root, "Drafts", (form, dialog) => {
+      const list = add(form, "div", { className: "templates" });
+      const shown = this.drafts.all();
+      for (const draft of shown) {
+        const entry = add(list, "div", { className: "draft" });
+        const button = add(entry, "button", { type: "button" });
+        add(button, "div", { className: "picture" });
+        add(button, "strong", { textContent: nameIn(draft.text) });
+        add(button, "span", { textContent: `${new Date(draft.at).toLocaleString()}${draft.disk === undefined ? "" : `, ${draft.name}`}` });
+        button.addEventListener("click", () => dialog.close(draft.id));
+        if (draft.id !== this.draft.id) {
+          const gone = add(entry, "button", { type: "button", className: "remove", textContent: "Remove" });
+          gone.setAttribute("aria-label", `Remove ${nameIn(draft.text)}`);
+          gone.addEventListener("click", () => {
+            this.drafts.remove(draft.id);
+            entry.remove();
+            this.keep();
+          });
+        }
+      }
+      if (shown.length === 0) {
+        add(form, "p", { className: "note", textContent: "What you draw is kept in this browser, and stands here." });
+      }
+      buttonRow(form, ["Cancel", ""]);
+      this.pictureAll(list, shown);
+    });
+    const draft = id && this.drafts.get(id);
+    if (draft && draft.id !== this.draft.id && (await this.mayLeave())) {
+      this.open(draft);
+    }
   }
 
   // -- what is selected ----------------------------------------------------------------------
@@ -327,6 +470,23 @@ class Studio {
     this.inspector.show();
     this.design.mark();
     this.markText();
+  }
+
+  /** Follows a thing, or a point, to its new name. */
+  renameSelection(old, now) {
+    const { selection } = this;
+    const [last, path] = [old.split(".").pop(), now.split(".").pop()];
+    const renamed = (name) => {
+      if (name === old) {
+        return old.includes(".") ? `${old.slice(0, -last.length)}${path}` : now;
+      }
+      return name.startsWith(`${old}.`) ? now + name.slice(old.length) : name;
+    };
+    if (selection?.name) {
+      this.selection = { ...selection, name: renamed(selection.name) };
+    } else if (selection) {
+      this.selection = { ...selection, markers: selection.markers.map(renamed), joints: selection.joints?.map(renamed) };
+    }
   }
 
   /** Forgets what is no longer there. */
@@ -439,7 +599,7 @@ class Studio {
   }
 
   hint(text) {
-    say(this.find(".status .hint"), text);
+    say(this.find(".status .hint"), byKeys(text));
   }
 
   say(text) {
@@ -518,7 +678,7 @@ class Studio {
       if (tool.group) {
         add(place, "span", { className: "group", textContent: tool.group });
       }
-      const button = add(place, "button", { type: "button", value: name, title: `${tool.hints[0]} (${tool.key.toUpperCase()})` });
+      const button = add(place, "button", { type: "button", value: name, title: byKeys(`${tool.hints[0]} (${tool.key.toUpperCase()})`) });
       button.append(icon(name));
       add(button, "span", { textContent: tool.label });
       button.addEventListener("click", () => {
@@ -567,8 +727,21 @@ class Studio {
         }
       });
     }
+    click(".from-disk", () => this.settle(false));
+    click(".to-disk", () => this.settle(true));
+    addEventListener("hashchange", () => this.openLink());
+    addEventListener("pagehide", () => this.takeFields());
+    document.addEventListener("visibilitychange", () => document.hidden && this.takeFields());
+    addEventListener("beforeunload", (event) => {
+      this.takeFields();
+      if (this.unsaved || this.ownDisk?.waits) {
+        event.preventDefault();
+      }
+    });
     document.addEventListener("keydown", (event) => this.key(event));
     document.addEventListener("keyup", () => this.design.keyUp());
+    // A key is for the sheet or the motion, not for the button that was clicked last.
+    find(".bar").addEventListener("click", (event) => event.detail && event.target.closest("button")?.blur());
     find(".pictured").addEventListener("change", (event) => {
       this.background.open(event.target.files[0]);
       event.target.value = "";
@@ -583,16 +756,20 @@ class Studio {
     const { target, key } = event;
     const inField = target.closest?.("input, textarea, select, .editor, dialog, .menu");
     const command = event.ctrlKey || event.metaKey;
-    if (command && !inField) {
+    const saves = target.closest?.(".editor, .inspector") && /^[se]$/i.test(key);
+    if (command && (!inField || saves)) {
+      const [undo, redo] = this.isDesign ? [() => this.undo(), () => this.redo()] : [() => this.live.find(".undo").click(), () => this.live.find(".redo").click()];
       const act = {
-        z: () => (event.shiftKey ? this.redo() : this.undo()),
-        y: () => this.redo(),
+        z: () => (event.shiftKey ? redo() : undo()),
+        y: redo,
         s: () => saveFile(this),
         e: () => exportFmu(this),
         d: () => this.selected().length && this.gesture({ kind: "duplicate", bodies: this.selected(), by: [4 * this.sheet.step, -4 * this.sheet.step] }),
       }[key.toLowerCase()];
       if (act) {
         event.preventDefault();
+        // The page of the motion listens for some of them, too.
+        event.stopImmediatePropagation();
         act();
       }
       return;
@@ -636,6 +813,8 @@ class Studio {
       [
         { label: "New", act: () => this.begin() },
         { label: "Open a file …", act: () => this.find(".opened").click() },
+        { label: "Drafts …", act: () => this.chooseDraft() },
+        ...(this.disk && !this.ownDisk ? [{ label: `Back to ${this.disk.name}`, act: () => this.backToDisk() }] : []),
         { label: "Templates …", act: () => this.chooseTemplate() },
         { label: "Background picture …", act: () => this.find(".pictured").click() },
         ...(this.background.image
@@ -664,7 +843,6 @@ class Studio {
 
   async begin() {
     if (await this.mayLeave()) {
-      this.background.remove();
       this.open({ name: "mechanism.toml", text: EMPTY });
     }
   }
@@ -680,30 +858,50 @@ class Studio {
         button.addEventListener("click", () => dialog.close(template.name));
       }
       buttonRow(form, ["Cancel", ""]);
-      this.pictureTemplates(list);
+      this.pictureAll(list, this.templates);
     });
     const template = this.templates.find((each) => each.name === name);
     if (template && (await this.mayLeave())) {
-      this.background.remove();
       this.open({ name: `${template.name}.toml`, text: template.text, files: template.files });
     }
   }
 
-  /** Draws the templates as they come into view. */
-  pictureTemplates(list) {
-    const buttons = [...list.children];
+  /** Draws mechanisms as their places in a list come into view. */
+  pictureAll(list, mechanisms) {
+    const places = [...list.children];
     const watcher = new IntersectionObserver((entries) => {
       for (const { target } of entries.filter((entry) => entry.isIntersecting)) {
         watcher.unobserve(target);
         setTimeout(() => {
-          const template = this.templates[buttons.indexOf(target)];
-          const { name, text, files } = template;
-          template.picture ??= this.ask({ do: "svg", name, text, files }).svg ?? "";
-          showPicture(target.querySelector(".picture"), template.picture);
+          const mechanism = mechanisms[places.indexOf(target)];
+          const { name, text, files } = mechanism;
+          mechanism.picture ??= this.ask({ do: "svg", name, text, files }).svg ?? "";
+          showPicture(target.querySelector(".picture"), mechanism.picture);
         });
       }
     });
-    buttons.forEach((button) => watcher.observe(button));
+    places.forEach((place) => watcher.observe(place));
+  }
+
+  /** Returns the file that the page's address holds, which leaves the address; null for none. */
+  async fileOfAddress() {
+    if (!location.hash.startsWith("#m=")) {
+      return null;
+    }
+    const file = await fileOfLink().catch(() => null);
+    history.replaceState(null, "", location.pathname + location.search);
+    if (!file) {
+      this.say("The link is not whole: its end is missing, or a program has changed it. Copy all of it");
+    }
+    return file;
+  }
+
+  /** Opens the link that was put into the address of this page. */
+  async openLink() {
+    const file = await this.fileOfAddress();
+    if (file && (await this.mayLeave())) {
+      this.open(file);
+    }
   }
 
   async openFiles(files) {
@@ -745,7 +943,7 @@ class Studio {
         "Add a **driver** at a pin or slider: it is the FMU's input.",
         "Choose **Motion** and pull: the mechanism moves. *Export FMU* takes it along.",
       ]) {
-        add(list, "li", { textContent: step.replaceAll("*", "") });
+        add(list, "li", { textContent: byKeys(step.replaceAll("*", "")) });
       }
       const keys = add(form, "dl", { className: "keys-list" });
       const told = [
@@ -764,7 +962,7 @@ class Studio {
         ["Alt+M", "Design or Motion"],
       ];
       for (const [key, text] of told) {
-        add(keys, "dt", { textContent: key });
+        add(keys, "dt", { textContent: byKeys(key) });
         add(keys, "dd", { textContent: text });
       }
       buttonRow(form, ["Close", ""]);
@@ -786,34 +984,14 @@ function changeOf(before, after) {
   return [from, before.length - end, after.slice(from, after.length - end)];
 }
 
+/** Returns the name of a mechanism file. */
+function nameIn(text) {
+  return text.match(/^name\s*=\s*"([A-Za-z0-9_]+)"/m)?.[1] ?? "mechanism";
+}
+
 /** Returns a message as a sentence. */
 function sentence(text) {
   return text && text[0].toUpperCase() + text.slice(1);
-}
-
-/** The file on the disk that `biela studio FILE` keeps in step. */
-class Disk {
-  constructor(token, version) {
-    this.token = token;
-    this.version = version;
-  }
-
-  async write(text) {
-    if (text === this.text) {
-      return;
-    }
-    const answer = await fetch("file", {
-      method: "PUT",
-      headers: { "X-Biela-Token": this.token, "X-Biela-Version": this.version },
-      body: text,
-    });
-    if (answer.ok) {
-      this.text = text;
-      this.version = await answer.text();
-    } else {
-      studio.say(`The file was not written: ${await answer.text()}`);
-    }
-  }
 }
 
 let studio;
@@ -825,22 +1003,40 @@ async function begin() {
   studio = new Studio(root, module, given.parts, given.templates);
   studio.schema = given.schema;
   root.studio = studio;
-  let file = given.file ?? (await fileOfLink().catch(() => null));
-  if (given.token) {
-    studio.disk = new Disk(given.token, given.version);
-    studio.disk.text = given.file.text;
-  }
-  if (!file) {
-    try {
-      file = JSON.parse(localStorage.getItem(KEPT));
-    } catch {
-      file = null;
-    }
-    // A picture that cannot be read again takes no drawing with it.
-    await studio.background.restore().catch(() => {});
-  }
-  studio.open(file ?? { name: "mechanism.toml", text: EMPTY });
+  studio.open(await firstFile(studio, given));
   root.classList.add("ready");
+}
+
+/** Returns what a page begins with: what its tab has shown last, else the file on the disk, a link or the latest draft. */
+async function firstFile(studio, given) {
+  const { drafts } = studio;
+  studio.server = given.token ?? "";
+  const { id, server } = drafts.shown;
+  if (given.token) {
+    studio.disk = new Disk(given, () => studio.keepDraft());
+  }
+  const linked = await studio.fileOfAddress();
+  if (linked) {
+    return linked;
+  }
+  const shown = id && (server === studio.server || !given.token) ? drafts.get(id) : null;
+  if (shown && shown.id !== studio.disk?.id) {
+    return shown;
+  }
+  if (studio.disk) {
+    const kept = drafts.get(studio.disk.id);
+    const { text } = given.file;
+    if (!kept || kept.text === text || kept.disk === text) {
+      return { ...given.file, ...kept, id: studio.disk.id };
+    }
+    if (kept.text !== kept.disk) {
+      // What the file never got stays beside what another program has written.
+      drafts.keep({ ...kept, id: newId(), disk: undefined, changed: true }, studio.server);
+      studio.say(`\`${given.file.name}\` was changed on the disk: what was drawn before is under Drafts`);
+    }
+    return { ...given.file, id: studio.disk.id };
+  }
+  return drafts.all()[0] ?? { name: "mechanism.toml", text: EMPTY };
 }
 
 begin().catch((error) => {

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::drawn::Drawn;
 use super::gesture::{self, Editing, Refusal};
-use super::request::Gesture;
+use super::request::{Change, Gesture, History};
 use super::sketch::sketch;
 use super::status::{State, sentence};
 use crate::write::TomlText;
@@ -12,6 +12,8 @@ use biela::mechanism::{Diagnostic, Severity, Source};
 
 /// Most texts to which undo returns.
 const MOST: usize = 1_000;
+/// Most of them that a history has: what a browser keeps stays small.
+const MOST_KEPT: usize = 200;
 
 /// The file of a studio.
 #[derive(Debug, Default)]
@@ -170,6 +172,46 @@ impl Document {
         true
     }
 
+    /// Returns the history of the text.
+    pub(super) fn history(&self) -> History {
+        let changes = |texts: &[String]| {
+            let texts = &texts[texts.len().saturating_sub(MOST_KEPT)..];
+            let later = texts.iter().skip(1).chain([&self.text]);
+            let mut changes: Vec<Change> = Vec::new();
+            changes.extend(
+                texts
+                    .iter()
+                    .zip(later)
+                    .map(|(text, later)| change(later, text)),
+            );
+            changes
+        };
+        History {
+            before: changes(&self.before),
+            undone: changes(&self.undone),
+        }
+    }
+
+    /// Takes over the history of this text; of one whose changes do not fit, the part that does.
+    pub(super) fn restore(&mut self, history: &History) {
+        let texts = |changes: &[Change]| {
+            let mut texts = vec![self.text.clone()];
+            for (from, to, with) in changes.iter().rev() {
+                let last = texts.last().map_or("", String::as_str);
+                let (Some(head), Some(tail), true) =
+                    (last.get(..*from), last.get(*to..), from <= to)
+                else {
+                    break;
+                };
+                texts.push(format!("{head}{with}{tail}"));
+            }
+            texts.remove(0);
+            texts.reverse();
+            texts
+        };
+        (self.before, self.undone) = (texts(&history.before), texts(&history.undone));
+    }
+
     /// Describes the document: its text, its problems, what is drawn at a scale.
     pub(super) fn view(&self, scale: f64) -> Value {
         let problems: Vec<Value> = self.problems.iter().map(|p| self.problem(p)).collect();
@@ -230,6 +272,27 @@ impl Document {
             "help": problem.help,
         })
     }
+}
+
+/// Returns the one change that makes another text of a text.
+fn change(text: &str, other: &str) -> Change {
+    let head = (text.bytes().zip(other.bytes()))
+        .take_while(|(a, b)| a == b)
+        .count();
+    let head = text
+        .floor_char_boundary(head)
+        .min(other.floor_char_boundary(head));
+    let rests = [&text[head..], &other[head..]];
+    let tail = rests[0].chars().rev().zip(rests[1].chars().rev());
+    let tail: usize = tail
+        .take_while(|(a, b)| a == b)
+        .map(|(a, _)| a.len_utf8())
+        .sum();
+    (
+        head,
+        text.len() - tail,
+        rests[1][..rests[1].len() - tail].to_owned(),
+    )
 }
 
 /// Describes what is drawn: status, sketch and picture.

@@ -50,9 +50,11 @@ impl Host {
                 name,
                 text,
                 files,
+                history,
                 scale,
             } => {
                 self.document = Document::new(&name, &text, files);
+                self.document.restore(&history.unwrap_or_default());
                 scale
             }
             Request::Type {
@@ -84,6 +86,7 @@ impl Host {
                 self.document.redo();
                 scale
             }
+            Request::History {} => return Ok(json!({ "history": self.document.history() })),
             Request::View { scale } => scale,
             Request::Inspect { names } => {
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -1,6 +1,6 @@
 //! Requests of the studio's scripts, and gestures.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// A request, in JSON with its name under `do`. Each that draws may have the `scale` of the picture
@@ -11,14 +11,18 @@ use serde_json::Value;
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum Request {
-    /// Begins with a file, with the contents of others beside it; answers a view.
+    /// Begins with a file, with the contents of others beside it, and maybe with the history that its
+    /// text had; answers a view.
     Begin {
         name: String,
         text: String,
         #[serde(default)]
         files: Vec<(String, String)>,
+        history: Option<History>,
         scale: Option<f64>,
     },
+    /// Answers the `history` of the text, by which another studio begins where this one is.
+    History {},
     /// Takes a text that was typed, maybe `joined` to the change before; answers a view.
     Type {
         text: String,
@@ -47,6 +51,18 @@ pub(super) enum Request {
     #[serde(other)]
     OfPage,
 }
+
+/// The texts to which undo and redo return: each as its change from the one that is left for it, the next
+/// one last.
+#[derive(Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct History {
+    pub(super) before: Vec<Change>,
+    pub(super) undone: Vec<Change>,
+}
+
+/// A change of a text: begin and end of the bytes that are replaced, and what takes their place.
+pub(super) type Change = (usize, usize, String);
 
 /// A gesture, with its name under `kind`. Points are global \[m\], angles in radians.
 #[derive(Debug, Deserialize)]

@@ -11,11 +11,14 @@ use serde_json::{Value, json};
 use super::new::templates;
 use crate::cli::pages::live;
 use crate::cli::pages::page_solver::{self, Solver};
-use crate::cli::pages::server::{Answer, Listening, PAGE, Request, SCRIPT, Server, TEXT, token};
+use crate::cli::pages::server::{
+    Answer, JSON, Listening, PAGE, Request, SCRIPT, Server, TEXT, token,
+};
 use crate::cli::pages::studio_page::{Beginning, page, part};
 use crate::cli::results::output::{print, tell_written, write};
 use crate::cli::runtime;
 use crate::cli::told::error::Error;
+use crate::cli::told::message::{Message, tell};
 use biela::mechanism::{Mechanism, Source, is_identifier};
 
 /// Draw a mechanism in a browser, move it, and take the FMU home.
@@ -44,6 +47,9 @@ pub(in crate::cli) struct Studio {
     #[command(flatten)]
     listening: Listening,
 }
+
+/// Port of the studio: a browser keeps drafts by the address of a page.
+const PORT: u16 = 7433;
 
 /// The parts of a studio besides its page.
 struct Parts {
@@ -74,7 +80,7 @@ impl Parts {
         })
     }
 
-    fn page(&self, file: Option<Value>, disk: Option<[String; 2]>) -> String {
+    fn page(&self, file: Option<Value>, disk: Option<[String; 3]>) -> String {
         let parts = self.packed.iter().map(|(name, _)| name.clone());
         let beginning = Beginning {
             file,
@@ -110,18 +116,36 @@ impl Studio {
         if let Some(file) = &self.file {
             read(file).map_err(Error::read(file))?;
         }
-        let server = Server::new(&self.listening)?;
+        let server = Server::new(&self.listening, PORT)?;
+        if server.port() != PORT && !self.listening.is_given() {
+            tell(Message::Note(format!(
+                "port {PORT} is taken, maybe by another studio: this one is on port {}, where the browser \
+                 keeps other drafts",
+                server.port()
+            )));
+        }
         let _ = print(&format!("{}\n", server.address()));
         let token = token();
+        let read_all = |file: &Path| {
+            let (content, version) = read(file)?;
+            io::Result::Ok((content, [token.clone(), version, place(file)]))
+        };
         server.serve(|request| match (&*request.method, &*request.path) {
             ("GET", "/") => {
-                let (file, disk) = match self.file.as_deref().map(read).transpose() {
-                    Ok(Some((file, version))) => (Some(file), Some([token.clone(), version])),
-                    Ok(None) => (None, None),
-                    Err(error) => return Answer::failure(error.to_string()),
-                };
-                Answer::new(PAGE, parts.page(file, disk))
+                let read = self.file.as_deref().map(read_all).transpose();
+                match read.map(Option::unzip) {
+                    Ok((file, disk)) => Answer::new(PAGE, parts.page(file, disk)),
+                    Err(error) => Answer::failure(error.to_string()),
+                }
             }
+            ("GET", "/file") => match self.file.as_deref().map(read_all) {
+                Some(Ok((file, [token, version, _]))) => {
+                    let told = json!({ "file": file, "token": token, "version": version });
+                    Answer::new(JSON, told.to_string())
+                }
+                Some(Err(error)) => Answer::failure(error.to_string()),
+                None => Answer::refusal("404 Not Found"),
+            },
             ("GET", path) => match parts.script(path) {
                 Some(script) => Answer::new(SCRIPT, script),
                 None => Answer::refusal("404 Not Found"),
@@ -170,6 +194,17 @@ fn read(path: &Path) -> io::Result<(Value, String)> {
     let mechanism = Mechanism::parse(&source).ok();
     let mechanism = mechanism.as_ref().map(|(mechanism, _)| mechanism);
     Ok((live::file(&source, mechanism), version))
+}
+
+/// Returns a word for the place of a file, which may not exist yet.
+fn place(path: &Path) -> String {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize();
+    let place = folder.map(|folder| folder.join(path.file_name().unwrap_or_default()));
+    let place = place.unwrap_or_else(|_| path.to_owned());
+    version(place.to_string_lossy().as_bytes())
 }
 
 /// Returns a word that changes with the content of a file.

@@ -56,7 +56,7 @@ impl Watch {
             true => page_solver::find(page_solver::Solver::Page)?,
             false => None,
         };
-        let server = Server::new(&self.listening)?;
+        let server = Server::new(&self.listening, 0)?;
         if solver.is_none() && self.conditions.is_empty() {
             let note = "no solver for pages was found, so the page plays a motion and cannot be \
                         moved by hand: run `make page` and `make install`";

@@ -17,19 +17,22 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Types of answers.
 pub(in crate::cli) const PAGE: &str = "text/html";
 pub(in crate::cli) const TEXT: &str = "text/plain";
+pub(in crate::cli) const JSON: &str = "application/json";
 pub(in crate::cli) const SCRIPT: &str = "text/javascript";
 
 /// The option of commands that serve.
 #[derive(Args, Debug)]
 pub(in crate::cli) struct Listening {
-    /// The port to listen on [default: a free one].
-    #[arg(
-        long,
-        value_name = "PORT",
-        default_value_t = 0,
-        hide_default_value = true
-    )]
-    port: u16,
+    /// The port to listen on, 0 for a free one [default: 7433 for `studio`, a free one for `watch`].
+    #[arg(long, value_name = "PORT")]
+    port: Option<u16>,
+}
+
+impl Listening {
+    /// Returns whether the port was named.
+    pub(in crate::cli) fn is_given(&self) -> bool {
+        self.port.is_some()
+    }
 }
 
 /// A server that listens on the loopback address only.
@@ -92,14 +95,25 @@ impl Answer {
 }
 
 impl Server {
-    pub(in crate::cli) fn new(listening: &Listening) -> Result<Self, Error> {
-        let port = listening.port;
-        let listen = || {
+    /// Listens on the port that the option names, otherwise on the `usual` one or, where that is taken, on
+    /// a free one.
+    pub(in crate::cli) fn new(listening: &Listening, usual: u16) -> Result<Self, Error> {
+        let listen = |port: u16| {
             let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
             let port = listener.local_addr()?.port();
             Ok(Self { listener, port })
         };
-        listen().map_err(|source| Error::Listen { port, source })
+        let port = listening.port.unwrap_or(usual);
+        let listened = listen(port).or_else(|error| match listening.port {
+            Some(_) => Err(error),
+            None => listen(0),
+        });
+        listened.map_err(|source| Error::Listen { port, source })
+    }
+
+    /// Returns the port.
+    pub(in crate::cli) fn port(&self) -> u16 {
+        self.port
     }
 
     pub(in crate::cli) fn address(&self) -> String {

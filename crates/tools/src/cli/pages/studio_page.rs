@@ -14,9 +14,11 @@ const EDITOR_LICENCES: &str = include_str!("../../../../studio/editor/licenses.t
 const EDITOR: &str = include_str!("../../../../studio/editor/bundle.js");
 const LIVE: &str = include_str!("../../../../page/scripts/live.html");
 /// The scripts, behind those of a mechanism that moves; each uses only those before it.
-const OWN_SCRIPTS: [&str; 12] = [
+const OWN_SCRIPTS: [&str; 14] = [
     include_str!("../../../../studio/scripts/units.js"),
     include_str!("../../../../studio/scripts/dialogs.js"),
+    include_str!("../../../../studio/scripts/disk.js"),
+    include_str!("../../../../studio/scripts/drafts.js"),
     include_str!("../../../../studio/scripts/background.js"),
     include_str!("../../../../studio/scripts/sheet.js"),
     include_str!("../../../../studio/scripts/snap.js"),
@@ -33,8 +35,9 @@ const OWN_SCRIPTS: [&str; 12] = [
 pub(in crate::cli) struct Beginning<'a> {
     /// The file to open: `name`, `text` and `files`, names with contents.
     pub(in crate::cli) file: Option<Value>,
-    /// With these the page may write the file on the disk: a token, and the version of the file.
-    pub(in crate::cli) disk: Option<[String; 2]>,
+    /// With these the page may write the file on the disk: a token, the version of the file, and a word
+    /// for its place.
+    pub(in crate::cli) disk: Option<[String; 3]>,
     /// Names of the parts beside the page: platforms that have a library, and `page`.
     pub(in crate::cli) parts: Vec<String>,
     /// Mechanisms to begin from: `name`, `description`, `text` and `files`.
@@ -46,8 +49,9 @@ pub(in crate::cli) fn page(solver: &str, beginning: &Beginning) -> String {
     let disk = beginning.disk.as_ref();
     let data = json!({
         "file": beginning.file,
-        "token": disk.map(|[token, _]| token),
-        "version": disk.map(|[_, version]| version),
+        "token": disk.map(|[token, _, _]| token),
+        "version": disk.map(|[_, version, _]| version),
+        "place": disk.map(|[_, _, place]| place),
         "parts": beginning.parts,
         "templates": beginning.templates,
         "schema": Mechanism::schema(),

@@ -162,6 +162,42 @@ fn a_four_bar_is_drawn_in_four_gestures() {
 }
 
 #[test]
+fn another_studio_goes_on_with_the_history_of_a_text() {
+    let mut host = studio(EMPTY);
+    for text in ["# ä\n", "# äö and\n", "# ö\n", ""] {
+        ask(
+            &mut host,
+            &json!({ "do": "type", "text": format!("{EMPTY}{text}") }),
+        );
+    }
+    ask(&mut host, &json!({ "do": "text_undo" }));
+    let history = ask(&mut host, &json!({ "do": "history" }))["history"].clone();
+    let mut other = Host::default();
+    let begin = |history: &Value| {
+        json!({
+            "do": "begin", "name": "a.toml", "text": format!("{EMPTY}# ö\n"), "history": history,
+        })
+    };
+    ask(&mut other, &begin(&history));
+    for word in [
+        "text_redo",
+        "text_undo",
+        "text_undo",
+        "text_undo",
+        "text_undo",
+        "text_redo",
+    ] {
+        let views = [&mut host, &mut other].map(|host| ask(host, &json!({ "do": word })));
+        assert_eq!(views[0], views[1], "{word}");
+    }
+    assert_eq!(other.text(), format!("{EMPTY}# ä\n"));
+    // A change that does not fit ends the history.
+    let wrong = json!({ "before": [[0, 1, "a"], [5000, 2, "b"]], "undone": [] });
+    let view = ask(&mut other, &begin(&wrong));
+    assert_eq!(view["can_undo"], false);
+}
+
+#[test]
 fn a_slider_crank_is_drawn_from_its_points() {
     let mut host = studio(EMPTY);
     act(
