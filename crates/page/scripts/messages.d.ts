@@ -100,12 +100,14 @@ export type Gesture =
   | { kind: "slot"; marker: string; body: string }
   // Drives the distance between two points.
   | { kind: "cylinder"; points: Target[] }
-  // Adds two wheels: in mesh, which meet at a `contact`, or on a belt, with `radii`.
-  | { kind: "wheels"; type: WheelPair; points: Target[]; contact?: [number, number] | null; radii?: [number, number] | null }
+  // Adds two wheels: in mesh, which meet at a `contact`, or on a belt, with `radii`. Those that are
+  // `fixed` are part of the bodies of the markers at their centres.
+  | { kind: "wheels"; type: WheelPair; points: Target[]; fixed?: [boolean, boolean]; contact?: [number, number] | null; radii?: [number, number] | null }
   // Adds a pinion and its rack.
   | { kind: "rack"; point: Target; contact: [number, number] }
-  // Adds a cam and its follower, a knife unless another one is named.
-  | { kind: "cam"; point: Target; contact: [number, number]; follower?: Follower }
+  // Adds a cam and its follower, a knife unless another one is named; or a cam that a roller at a point
+  // `of` another body follows.
+  | { kind: "cam"; point: Target; contact: [number, number]; of?: string | null; follower?: Follower }
   // Adds a spring between two points.
   | { kind: "spring"; points: Target[] }
   // Adds a damper between two points.

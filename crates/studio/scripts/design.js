@@ -12,6 +12,9 @@ const DRAG = 4;
 // Time for which a finger rests to open the menu [ms].
 const LONG_PRESS = 550;
 
+// Tools that take hold of the face of a wheel.
+const FACED = ["link", "plate", "cylinder", "spring", "damper"];
+
 export class Design {
   /** `studio` asks the solver and shows its views; `sheet` is drawn on. */
   constructor(studio, sheet) {
@@ -107,6 +110,11 @@ export class Design {
     });
     if (this.tool === "scale") {
       return { at: this.sheet.toPoint(this.sheet.placeOf(event)), guides: [] };
+    }
+    if (FACED.includes(this.tool) && !found.point && !found.body && !this.isGround(event)) {
+      const { body } = this.insideOf(event);
+      const isFace = this.sketch.bodies.some((each) => each.name === body && each.is_wheel);
+      return isFace ? { ...found, body } : found;
     }
     const inside = ["select", "mass"].includes(this.tool) && !this.drag && !found.point && !found.body && !found.thing;
     return inside ? { ...found, ...this.insideOf(event) } : found;
@@ -284,6 +292,9 @@ export class Design {
         return;
       }
     }
+    if (this.tool === "wheels" && this.found.length < 2 && found.point) {
+      found.fixed = await this.chooseWheel(found.point, event);
+    }
     const last = this.found[this.found.length - 1];
     if (last && isSame(last.at, found.at) && tool.only === undefined) {
       this.studio.say("This is the point that was clicked before: click another one");
@@ -316,6 +327,17 @@ export class Design {
     this.drop();
     this.studio.gesture(gesture);
     this.hint();
+  }
+
+  /** Asks whether a wheel is part of a body at its centre; returns the marker of that, "" for none. */
+  async chooseWheel(point, event) {
+    const bodyOf = (marker) => this.sketch.bodies.find((body) => body.markers.includes(marker));
+    const markers = point.markers.filter(bodyOf);
+    if (markers.length === 0 || markers.some((marker) => bodyOf(marker).is_wheel)) {
+      return "";
+    }
+    const fixed = markers.map((marker) => [`A wheel fixed to ${bodyOf(marker).name}`, marker]);
+    return this.studio.choose([["A wheel that turns here", ""], ...fixed], event);
   }
 
   /** Asks which of several joints at a point is meant. */
@@ -438,16 +460,6 @@ export class Design {
     this.typed.hidden = !(tool.typed && this.found.length);
     this.long.value = "";
     this.turn.value = "";
-    this.placeTyped();
-  }
-
-  placeTyped() {
-    if (!this.typed.hidden && this.found.length) {
-      const [u, v] = this.sheet.toScreen(this.found[this.found.length - 1].at);
-      const [width, height] = this.sheet.size;
-      this.typed.style.left = `${Math.max(4, Math.min(width - this.typed.offsetWidth - 4, u + 16))}px`;
-      this.typed.style.top = `${Math.max(4, Math.min(height - this.typed.offsetHeight - 4, v + 24))}px`;
-    }
   }
 
   takeTyped() {
@@ -471,7 +483,6 @@ export class Design {
   mark() {
     const { sheet } = this;
     sheet.clear();
-    this.placeTyped();
     this.studio.root.classList.toggle("begun", this.found.length > 0);
     if (!this.studio.isDesign) {
       return;

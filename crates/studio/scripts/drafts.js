@@ -11,9 +11,9 @@ const [OLD, OLD_PICTURE] = ["biela.studio", "biela.studio.picture"];
 
 /**
  * `changed` tells whether it was, `by` which page has it; `disk` is the text that the file on the disk is
- * known to have.
+ * known to have, `words` the text that was typed and that the solver could not take.
  * @typedef {{
- *   id: string, by?: string, at?: number, changed?: boolean, name: string, text: string, disk?: string,
+ *   id: string, by?: string, at?: number, changed?: boolean, name: string, text: string, words?: string, disk?: string,
  *   files?: [string, string][], history?: import("../../page/scripts/messages").History,
  * }} Draft
  */

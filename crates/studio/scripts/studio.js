@@ -125,19 +125,22 @@ class Studio {
       if (!(error instanceof Broken)) {
         throw error;
       }
+      console.info(error.message);
       this.solver = new Solver(this.module);
-      const { text } = this;
-      this.solver.ask({ do: "begin", ...this.file, text });
-      this.say(`The solver has failed, which is a defect of biela: ${error.message}. It goes on with the text as it is.`);
+      if (request.do !== "begin") {
+        this.solver.ask({ do: "begin", ...this.file, text: this.text, history: this.history });
+      }
+      this.say("This is a defect of biela: it cannot do that. The drawing is as it was before, with its undo");
       return { refused: {} };
     }
   }
 
   /**
    * Opens a file, which becomes another draft, or a draft.
-   * @param {{ name: string, text: string, files?: [string, string][], id?: string, history?: any, changed?: boolean }} file
+   * @param {{ name: string, text: string, files?: [string, string][], id?: string, history?: any, changed?: boolean, words?: string }} file
    */
   open(file, fit = true) {
+    const before = { draft: this.draft, file: this.file, lineEnd: this.lineEnd };
     this.draft = { id: file.id ?? newId(), changed: Boolean(file.changed) };
     this.file = { name: file.name, files: file.files ?? [] };
     // The editor has lines of one kind; the file keeps its own.
@@ -146,6 +149,13 @@ class Studio {
     this.design.answers.clear();
     const text = file.text.replaceAll("\r\n", "\n");
     const answer = this.ask({ do: "begin", ...this.file, text, history: file.history, scale: this.sheet.scale });
+    if (answer.refused) {
+      // What was shown stays; on a new page an empty sheet takes its place.
+      Object.assign(this, before);
+      const shown = before.draft ? { ...this.file, text: this.text, history: this.history } : { name: "mechanism.toml", text: EMPTY };
+      return before.draft ? this.ask({ do: "begin", ...shown }) : this.open(shown);
+    }
+    this.words = undefined;
     this.savedText = this.draft.changed ? null : file.text;
     this.claims = true;
     this.show(answer, { anew: true });
@@ -154,6 +164,31 @@ class Studio {
       this.fit();
     }
     this.setMode("design");
+    if (file.words) {
+      this.editor.set(file.words);
+      this.typed(file.words);
+    }
+    this.askForTables();
+  }
+
+  /** The tables that the file names and that are not there. */
+  get missingTables() {
+    const names = (this.view.problems ?? []).map(({ message }) => message.match(/^cannot read the file `([^`]+)`/)?.[1]);
+    return names.filter((name) => name && !this.file.files.some(([known]) => known === name));
+  }
+
+  /** Asks for the tables that are not there. */
+  async askForTables() {
+    const names = this.missingTables;
+    if (names.length) {
+      const answer = await openWindow(this.root, "Tables of the file", (form) => {
+        say(add(form, "p"), `The file names ${names.map((name) => `\`${name}\``).join(", ")}: a browser reads only what you choose.`);
+        buttonRow(form, ["Choose …", "choose"], ["Later", ""]);
+      });
+      if (answer) {
+        this.find(".opened").click();
+      }
+    }
   }
 
   /** Asks before a drawing is given up that is kept nowhere; true if it may go. */
@@ -302,7 +337,14 @@ class Studio {
     const now = performance.now();
     const joined = now - (this.typedAt ?? -Infinity) < PAUSE;
     this.typedAt = now;
-    this.show(this.ask({ do: "type", text, joined, scale: this.sheet.scale }), { typed: true });
+    const answer = this.ask({ do: "type", text, joined, scale: this.sheet.scale });
+    // Words that the solver cannot take stay in the text, and wait for others.
+    this.words = answer.refused ? text : undefined;
+    if (this.words) {
+      this.keepDraft();
+      return;
+    }
+    this.show(answer, { typed: true });
     this.stopMotion();
   }
 
@@ -340,11 +382,12 @@ class Studio {
   keepDraft() {
     const { draft, file, view, fileText: text } = this;
     draft.changed ||= view.can_undo || view.can_redo;
-    const { history } = this.ask({ do: "history" });
+    this.history = this.ask({ do: "history" }).history ?? this.history;
     try {
       const { id } = draft;
+      const { history, words } = this;
       const disk = this.ownDisk?.written;
-      draft.id = this.drafts.keep({ ...draft, ...file, text, history, disk }, this.server, this.claims);
+      draft.id = this.drafts.keep({ ...draft, ...file, text, history, words, disk }, this.server, this.claims);
       this.claims = false;
       this.storeTrouble = "";
       if (draft.id !== id) {
@@ -398,7 +441,7 @@ class Studio {
         await disk.write(this.fileText);
       } else {
         // What was drawn goes on as a draft of its own.
-        const { history } = this.ask({ do: "history" });
+        const { history } = this;
         this.drafts.keep({ ...this.file, id: newId(), changed: true, text: this.fileText, history }, this.server);
         this.open({ ...file, id: disk.id });
       }
@@ -741,7 +784,7 @@ class Studio {
     document.addEventListener("keydown", (event) => this.key(event));
     document.addEventListener("keyup", () => this.design.keyUp());
     // A key is for the sheet or the motion, not for the button that was clicked last.
-    find(".bar").addEventListener("click", (event) => event.detail && event.target.closest("button")?.blur());
+    find(".bar").addEventListener("click", (event) => event.detail && event.target.closest("button")?.blur(), true);
     find(".pictured").addEventListener("change", (event) => {
       this.background.open(event.target.files[0]);
       event.target.value = "";
@@ -922,11 +965,17 @@ class Studio {
       }
       return;
     }
-    if (!(await this.mayLeave())) {
+    if (files.some((file) => !this.missingTables.includes(file.name)) && !(await this.mayLeave())) {
       return;
     }
-    const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));
+    const texts = await Promise.all(files.map(async (file) => /** @type {[string, string]} */ ([file.name, await file.text()])));
     const main = texts.find(([name]) => name.toLowerCase().endsWith(".toml"));
+    const missing = texts.filter(([name]) => this.missingTables.includes(name));
+    if (!main && missing.length) {
+      const { draft, history } = this;
+      this.open({ ...draft, ...this.file, text: this.fileText, history, files: [...this.file.files, ...missing] }, false);
+      return;
+    }
     if (!main) {
       this.say("Open a mechanism file, `.toml`, together with the tables that it names, or a file of another program: `.asmt`, `.linkage2`, `.json`, `.dxf`");
       return;

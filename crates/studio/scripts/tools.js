@@ -45,7 +45,7 @@ export function ownMarker(point) {
  */
 function target(found, { own = false, ground = false } = {}) {
   if (found.point) {
-    return { at: found.at, marker: own ? ownMarker(found.point) : found.point.markers[0] };
+    return { at: found.at, marker: found.fixed || (own ? ownMarker(found.point) : found.point.markers[0]) };
   }
   if (found.body) {
     return { at: found.at, body: found.body };
@@ -156,6 +156,7 @@ export const TOOLS = {
       kind: "wheels",
       type: isBetween(a.at, b.at, at.at) ? "gear" : "internal",
       points: [a, b].map((each) => target(each)),
+      fixed: [Boolean(a.fixed), Boolean(b.fixed)],
       contact: at.at,
     })),
   },
@@ -182,8 +183,13 @@ export const TOOLS = {
   cam: {
     label: "Cam",
     key: "k",
-    hints: ["Click the centre of the cam", "Click where its follower touches it"],
-    ...byClicks(2, ([a, at]) => ({ kind: "cam", point: target(a), contact: at.at })),
+    hints: ["Click the centre of the cam, or the pin of a roller", "Click where its follower touches it, or the pin of a roller"],
+    ...byClicks(2, (found) => {
+      const roller = [...found].reverse().find(({ point }) => point && !point.ground);
+      const [centre, at] = roller === found[0] ? [found[1], roller] : found;
+      const of = roller && ownMarker(roller.point);
+      return { kind: "cam", point: target(centre, { ground: true }), contact: at.at, ...(of ? { of } : {}) };
+    }),
   },
   spring: {
     label: "Spring",

@@ -84,19 +84,24 @@ pub(super) enum Gesture {
     Slot { marker: String, body: String },
     /// Drives the distance between two points.
     Cylinder { points: Vec<Target> },
-    /// Adds two wheels: in mesh, which meet at a `contact`, or on a belt, with `radii`.
+    /// Adds two wheels: in mesh, which meet at a `contact`, or on a belt, with `radii`. Those that are
+    /// `fixed` are part of the bodies of the markers at their centres.
     Wheels {
         r#type: WheelPair,
         points: Vec<Target>,
+        #[serde(default)]
+        fixed: [bool; 2],
         contact: Option<[f64; 2]>,
         radii: Option<[f64; 2]>,
     },
     /// Adds a pinion and its rack.
     Rack { point: Target, contact: [f64; 2] },
-    /// Adds a cam and its follower, a knife unless another one is named.
+    /// Adds a cam and its follower, a knife unless another one is named; or a cam that a roller at a point
+    /// `of` another body follows.
     Cam {
         point: Target,
         contact: [f64; 2],
+        of: Option<String>,
         #[serde(default)]
         follower: Follower,
     },

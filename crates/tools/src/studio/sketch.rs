@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::drawn::Drawn;
-use biela::mechanism::{Joint, MarkerId, Mechanism};
+use biela::mechanism::{Body, Joint, MarkerId, Mechanism};
 
 /// Describes what is drawn. Points are global \[m\], angles in radians.
 ///
@@ -117,6 +117,7 @@ fn bodies(drawn: &Drawn, mechanism: &Mechanism) -> Vec<Value> {
         });
         json!({
             "name": body.name,
+            "is_wheel": is_wheel(mechanism, body),
             "frame": drawn.frame(Some(biela::mechanism::BodyId(index))),
             "markers": body.markers.iter().map(|id| mechanism.marker_path(*id)).collect::<Vec<_>>(),
             "bars": bars.collect::<Vec<_>>(),
@@ -124,6 +125,14 @@ fn bodies(drawn: &Drawn, mechanism: &Mechanism) -> Vec<Value> {
         })
     });
     bodies.collect()
+}
+
+/// Returns whether a body is a wheel, or a cam: it has a face around its centre.
+fn is_wheel(mechanism: &Mechanism, body: &Body) -> bool {
+    let round =
+        (mechanism.joints.iter()).filter(|joint| joint.wheels().is_some() || joint.cam().is_some());
+    let mut ends = round.flat_map(|joint| [joint.from, joint.to]);
+    ends.any(|id| body.markers.contains(&id))
 }
 
 fn paths(mechanism: &Mechanism, markers: [MarkerId; 2]) -> [String; 2] {

@@ -122,13 +122,21 @@ pub(super) fn act(gesture: &Gesture, editing: &mut Editing) -> Result<(), Refusa
         Gesture::Wheels {
             r#type,
             points,
+            fixed,
             contact,
             radii,
-        } => wheels::wheels(editing, *r#type, points, *contact, *radii),
+        } => wheels::wheels(editing, *r#type, points, *fixed, *contact, *radii),
         Gesture::Rack { point, contact } => rack::rack(editing, point, *contact),
         Gesture::Cam {
             point,
+            contact: _,
+            of: Some(of),
+            follower: _,
+        } => cam::followed(editing, point, of),
+        Gesture::Cam {
+            point,
             contact,
+            of: None,
             follower,
         } => cam::cam(editing, point, *contact, *follower),
         Gesture::Spring { points } => spring::spring(editing, points),

@@ -12,7 +12,7 @@ pub(super) fn rack(
     target: &Target,
     contact: [f64; 2],
 ) -> Result<(), Refusal> {
-    let centre = Centre::of(editing, target)?;
+    let centre = Centre::of(editing, target, false)?;
     let way = [0, 1].map(|k| contact[k] - centre.at[k]);
     let radius = editing.length(f64::hypot(way[0], way[1]));
     if radius == "0" {

@@ -16,8 +16,8 @@ pub(super) struct Centre {
 }
 
 impl Centre {
-    /// Returns the centre of a wheel at a target.
-    pub(super) fn of(editing: &Editing, target: &Target) -> Result<Self, Refusal> {
+    /// Returns the centre of a wheel at a target; a `fixed` one is part of the body of the marker there.
+    pub(super) fn of(editing: &Editing, target: &Target, fixed: bool) -> Result<Self, Refusal> {
         let at = editing.settled(target)?;
         let target = Target {
             at,
@@ -45,7 +45,8 @@ impl Centre {
             }
         };
         let mechanism = editing.mechanism()?;
-        let pinned = editing.drawn.pinned_to(editing.marker(&path)?);
+        let marker = editing.marker(&path)?;
+        let pinned = editing.drawn.pinned_to(marker);
         let wheels = mechanism.joints.iter().flat_map(|joint| {
             let own = joint.wheels();
             let second = own.filter(|wheels| !wheels.is_on_line()).map(|_| joint.to);
@@ -53,7 +54,10 @@ impl Centre {
         });
         // The ring of a planetary gear may be ground, which is no wheel that turns.
         let mut wheels = wheels.filter(|id| mechanism.markers[id.index()].body.is_some());
-        let wheel = wheels.find(|id| pinned.contains(id));
+        let wheel = match fixed && mechanism.markers[marker.index()].body.is_some() {
+            true => Some(marker),
+            false => wheels.find(|id| pinned.contains(id)),
+        };
         let others = pinned.iter().filter(|id| Some(**id) != wheel);
         let carriers = others.map(|id| editing.body_of(*id).map(str::to_owned));
         let carriers: Vec<String> = carriers.collect::<Result<_, _>>()?;

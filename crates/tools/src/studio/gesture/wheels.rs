@@ -10,13 +10,17 @@ pub(super) fn wheels(
     editing: &mut Editing,
     pair: WheelPair,
     points: &[Target],
+    fixed: [bool; 2],
     contact: Option<[f64; 2]>,
     radii: Option<[f64; 2]>,
 ) -> Result<(), Refusal> {
     let [first, second] = points else {
         return Err("a pair of wheels has two centres".into());
     };
-    let centres = [Centre::of(editing, first)?, Centre::of(editing, second)?];
+    let centres = [
+        Centre::of(editing, first, fixed[0])?,
+        Centre::of(editing, second, fixed[1])?,
+    ];
     let [a, b] = centres.each_ref().map(|centre| centre.at);
     let way = [b[0] - a[0], b[1] - a[1]];
     let apart = f64::hypot(way[0], way[1]);

@@ -252,3 +252,67 @@ fn forces_and_masses_that_make_no_sense_are_refused() {
     ];
     insta::assert_snapshot!(reasons.join("\n"));
 }
+
+#[test]
+fn a_geared_five_bar_is_drawn_with_wheels_fixed_to_its_cranks() {
+    let mut host = studio(EMPTY);
+    let link = |points: [Value; 2]| json!({ "kind": "link", "points": points });
+    act(
+        &mut host,
+        &link([ground(0.0, 0.0), json!({ "at": [0.02, 0.06] })]),
+    );
+    act(
+        &mut host,
+        &link([ground(0.2, 0.0), json!({ "at": [0.17, 0.05] })]),
+    );
+    act(
+        &mut host,
+        &link([marker("link.B"), json!({ "at": [0.1, 0.2] })]),
+    );
+    act(&mut host, &link([marker("link_2.D"), marker("link_3.E")]));
+    let gears = json!({
+        "kind": "wheels", "type": "gear", "points": [marker("link.A"), marker("link_2.C")],
+        "fixed": [true, true], "contact": [0.1, 0.0],
+    });
+    act(&mut host, &gears);
+    let view = act(&mut host, &json!({ "kind": "driver", "joint": "A" }));
+    assert_eq!(state(&view), "driven", "{}", host.text());
+    assert!(
+        host.text()
+            .contains("markers = [\"link.A\", \"link_2.C\"], radii = [0.1, 0.1]"),
+        "{}",
+        host.text()
+    );
+    // A link from the face of a wheel is pinned there.
+    let face = json!({ "at": [0.05, 0.0], "body": "link" });
+    act(&mut host, &link([face, json!({ "at": [0.05, -0.1] })]));
+    assert!(
+        host.text().contains("B = [0.06324555320336758, 0], "),
+        "{}",
+        host.text()
+    );
+}
+
+#[test]
+fn a_roller_on_a_lever_follows_a_cam() {
+    let mut host = studio(EMPTY);
+    let points = json!([{ "at": [0.0, 0.1], "ground": true }, { "at": [0.1, 0.1] }]);
+    act(&mut host, &json!({ "kind": "link", "points": points }));
+    let cam = |of: &str| {
+        json!({
+            "kind": "cam", "point": { "at": [0.1, 0.02], "ground": true }, "contact": [0.1, 0.1], "of": of,
+        })
+    };
+    let why =
+        "`ground.A` is on ground, as the centre of the cam is: choose a point that moves past it";
+    assert_eq!(refusal(&mut host, &cam("ground.A")), why);
+    act(&mut host, &cam("link.B"));
+    let view = act(&mut host, &json!({ "kind": "driver", "joint": "C" }));
+    assert_eq!(state(&view), "driven", "{}", host.text());
+    assert!(
+        host.text()
+            .contains("follower = \"roller\"\nradius = 0.02\nprofile = \"0.06 + 0.01*"),
+        "{}",
+        host.text()
+    );
+}
