@@ -150,3 +150,36 @@ def test_a_defect_of_the_solver_loses_neither_undo_nor_words(sheet):
     for text in (drawn, empty):
         sheet.page.locator(".bar .undo").click()
         assert sheet.text == text
+
+
+def test_one_unit_is_chosen_for_sheet_forms_and_rows(sheet):
+    sheet.tool("link")
+    sheet.click((0, 0), ground=True)
+    sheet.click((0.0, 0.1))
+    sheet.page.locator(".lengths").select_option("cm")
+    sheet.page.locator(".angles").select_option("rad")
+    sheet.tool("select")
+    sheet.click((0, 0.05))
+    assert sheet.page.locator(".marks .dimension").text_content() == "10 cm"
+    rows = sheet.page.locator(".inspector .field")
+    field = rows.filter(has_text="B x [cm]").locator("input")
+    assert field.input_value() == "10"
+    assert rows.filter(has_text="length A").locator("output").inner_text() == "10 cm"
+    turn = rows.filter(has_text="estimate angle [rad]").locator("input")
+    assert turn.input_value() == "1.570796"
+    field.fill("12.5")
+    field.press("Enter")
+    assert sheet.file["bodies"]["link"]["markers"]["B"] == [0.125, 0]
+    turn = rows.filter(has_text="estimate angle [rad]").locator("input")
+    turn.fill("1")
+    turn.press("Enter")
+    assert sheet.file["bodies"]["link"]["estimate"][2] == "57.2957795130823*deg"
+    # A length that is typed is in this unit, and the browser keeps it.
+    sheet.page.reload()
+    sheet.page.wait_for_selector(".studio.ready")
+    sheet.tool("link")
+    sheet.click((0.1, 0))
+    sheet.page.keyboard.type("7")
+    sheet.press("Enter")
+    assert sheet.file["bodies"]["link_2"]["markers"]["D"][0] == 0.07
+    assert sheet.page.locator(".lengths").input_value() == "cm"

@@ -87,7 +87,7 @@ def test_typed_text_counts_as_soon_as_it_is_typed(sheet):
     # A number in a field counts, too, while the caret is still in it.
     sheet.tool("select")
     sheet.click((0.1, 0.05))
-    sheet.page.locator(".inspector .field", has_text="B x").locator("input").fill("0.3")
+    sheet.page.locator(".inspector .field", has_text="B x").locator("input").fill("300")
     reload(sheet)
     assert sheet.file["bodies"]["link"]["markers"]["B"][0] == 0.3
 

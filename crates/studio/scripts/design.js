@@ -5,7 +5,7 @@ import { add, shown } from "./controls.js";
 import { askLength, askParameter, isMac } from "./dialogs.js";
 import { findAt, pointAt, rodsOf } from "./snap.js";
 import { TOOLS, ownMarker, unfit } from "./tools.js";
-import { DEGREE, angleOf, lengthOf } from "./units.js";
+import { angleOf, lengthOf } from "./units.js";
 
 // Way of the pointer from which a press is a drag [pixels].
 const DRAG = 4;
@@ -463,12 +463,12 @@ export class Design {
   }
 
   takeTyped() {
-    const { unit } = this.studio;
+    const { unit, turn } = this.studio;
     const from = this.found[this.found.length - 1].at;
     const to = this.over?.at ?? [from[0] + 1, from[1]];
     const ahead = [to[0] - from[0], to[1] - from[1]];
     const length = this.long.value.trim() === "" ? Math.hypot(...ahead) : lengthOf(this.long.value, unit);
-    const angle = this.turn.value.trim() === "" ? Math.atan2(ahead[1], ahead[0]) : angleOf(this.turn.value);
+    const angle = this.turn.value.trim() === "" ? Math.atan2(ahead[1], ahead[0]) : angleOf(this.turn.value, turn);
     if (!(length > 0) || !Number.isFinite(angle)) {
       this.studio.say(`Type a length such as \`120\` or \`12 cm\`, and an angle such as \`30\``);
       return;
@@ -513,8 +513,9 @@ export class Design {
         const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         const { name, factor } = this.studio.unit;
         const long = Number((Math.hypot(dx, dy) / factor).toPrecision(4));
-        const turn = Number((Math.atan2(dy, dx) / DEGREE).toFixed(1));
-        sheet.words(to, `${long} ${name}  ${turn}°`);
+        const { turn } = this.studio;
+        const angle = shown(Math.atan2(dy, dx) / turn.factor, 4);
+        sheet.words(to, `${long} ${name}  ${angle}${turn.name === "deg" ? "°" : " rad"}`);
       }
     }
   }

@@ -6,6 +6,7 @@ const DRAFT = "biela.draft.";
 const PICTURE = "biela.picture.";
 // Name under which a tab keeps the draft that it shows.
 const SHOWN = "biela.shown";
+const UNITS = "biela.units";
 // Names under which earlier studios kept their one drawing and its picture.
 const [OLD, OLD_PICTURE] = ["biela.studio", "biela.studio.picture"];
 
@@ -85,6 +86,15 @@ export class Drafts {
     } else {
       attempt(() => localStorage.removeItem(PICTURE + id));
     }
+  }
+
+  /** The units that the user has chosen; null for none. */
+  get units() {
+    return parsed(attempt(() => localStorage.getItem(UNITS)));
+  }
+
+  keepUnits(units) {
+    attempt(() => localStorage.setItem(UNITS, JSON.stringify(units)));
   }
 
   /** Makes a draft of the drawing that an earlier studio has kept. */

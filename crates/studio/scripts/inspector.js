@@ -3,6 +3,7 @@
 
 import { add, say, shown } from "./controls.js";
 import { TOOLS, icon } from "./tools.js";
+import { inPlaceOf } from "./units.js";
 
 export class Inspector {
   constructor(studio, place) {
@@ -58,11 +59,13 @@ export class Inspector {
     }
   }
 
-  row(place, { label, path, element, value, shown, unit, type, choices, help }) {
+  row(place, { label, path, element, value, shown: told, number, unit, type, choices, help }) {
     const row = add(place, "label", { className: "field", title: help ?? "" });
-    say(add(row, "span"), unit && type !== "read" ? `${label} [${unit}]` : label);
+    const own = { m: this.studio.unit, rad: this.studio.turn }[unit];
+    const inUnit = own && typeof number === "number" ? shown(number / own.factor) : null;
+    say(add(row, "span"), unit && type !== "read" ? `${label} [${own?.name ?? unit}]` : label);
     if (type === "read") {
-      add(row, "output", { textContent: [shown ?? value, shown ? "" : unit].filter(Boolean).join(" ") });
+      add(row, "output", { textContent: inUnit === null ? value : `${inUnit} ${own.name}` });
       return;
     }
     const put = (next) => {
@@ -79,9 +82,11 @@ export class Inspector {
       list.addEventListener("change", () => put(list.value));
       return;
     }
-    const brief = short(plain(value ?? ""));
+    const isNumber = inUnit !== null && /^"?[-+]?[\d._]+(e[-+]?\d+)?(\s*\*\s*[a-z]+)?"?$/i.test(value);
+    const brief = isNumber ? String(inUnit) : short(plain(value ?? ""));
     const field = add(row, "input", { type: "text", value: brief, title: plain(value ?? ""), autocomplete: "off", spellcheck: false });
-    add(row, "small", { textContent: shown && shown !== value ? shown : "" });
+    const beside = inUnit === null ? told : isNumber ? "" : `${inUnit} ${own.name}`;
+    add(row, "small", { textContent: beside && beside !== value ? beside : "" });
     let taken = brief;
     const take = () => {
       const text = field.value.trim();
@@ -91,7 +96,11 @@ export class Inspector {
       }
       taken = text;
       const isText = type === "text" && text !== "";
-      const length = text.match(/^([-+]?[0-9.]+)\s*(mm|cm|inch|deg)$/);
+      const length = text.match(/^([-+]?[0-9.]+)\s*(mm|cm|m|inch|deg|rad)$/);
+      if (own && text !== "" && Number.isFinite(Number(text))) {
+        put(inPlaceOf(value ?? "", Number(text) * own.factor, own));
+        return;
+      }
       put(length ? `"${length[1]}*${length[2]}"` : isText ? JSON.stringify(text) : text === brief ? value : text);
     };
     field.addEventListener("change", take);

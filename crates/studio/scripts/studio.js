@@ -14,6 +14,7 @@ import { Live } from "./live.js";
 import { Sheet } from "./sheet.js";
 import { Broken, Solver, unpack } from "./solver.js";
 import { TOOLS, icon } from "./tools.js";
+import { ANGLES, LENGTHS } from "./units.js";
 
 const EMPTY = 'format = 1\nname = "mechanism"\n';
 // Pause after which typing goes on as another change [ms].
@@ -29,7 +30,6 @@ const MAKERS = {
   forces: ["spring", "damper", "load"],
   stops: ["stop"],
 };
-const UNITS = { mm: 1e-3, cm: 1e-2, m: 1, inch: 0.0254 };
 
 class Studio {
   constructor(root, module, parts, templates) {
@@ -49,13 +49,15 @@ class Studio {
     this.view = {};
     this.selection = null;
     this.mode = "design";
-    this.unit = { name: "mm", factor: UNITS.mm };
+    this.unit = { name: "mm", factor: LENGTHS.mm };
+    this.turn = { name: "deg", factor: ANGLES.deg };
     this.menu = new Menu(root);
     this.sheet = new Sheet(this.find(".sheet"), () => this.redraw());
     this.background = new Background(this, this.sheet);
     this.design = new Design(this, this.sheet);
     this.inspector = new Inspector(this, this.find(".inspector"));
     this.makeTools();
+    this.makeUnits();
     this.editor = makeEditor(this.find(".editor"), {
       onChange: (text) => this.typed(text),
       onCursor: () => {},
@@ -319,11 +321,31 @@ class Studio {
     this.keep();
   }
 
-  /** Shows lengths as the file does. */
+  /** Takes the units that the user has chosen; for lengths otherwise the one of the file. */
   chooseUnit() {
+    const [length, angle] = [this.find(".lengths").value, this.find(".angles").value];
     const display = this.text.match(/display\s*=\s*"(mm|cm|m|inch)"/)?.[1];
-    const name = display ?? ((this.view.sketch?.size ?? 0) > 3 ? "m" : "mm");
-    this.unit = { name, factor: UNITS[name] };
+    const name = length || display || ((this.view.sketch?.size ?? 0) > 3 ? "m" : "mm");
+    this.unit = { name, factor: LENGTHS[name] };
+    this.turn = { name: angle, factor: ANGLES[angle] };
+  }
+
+  /** Offers units, with those that this browser keeps. */
+  makeUnits() {
+    const lists = [this.find(".lengths"), this.find(".angles")];
+    lists[0].add(new Option("unit of the file", ""));
+    [LENGTHS, ANGLES].forEach((units, index) => Object.keys(units).forEach((name) => lists[index].add(new Option(name, name))));
+    const kept = this.drafts.units ?? [];
+    lists.forEach((list, index) => (list.value = kept[index] ?? list.value));
+    for (const list of lists) {
+      list.addEventListener("change", () => {
+        this.chooseUnit();
+        this.inspector.told = null;
+        this.inspector.show();
+        this.design.mark();
+        this.drafts.keepUnits(lists.map(({ value }) => value));
+      });
+    }
   }
 
   fit() {

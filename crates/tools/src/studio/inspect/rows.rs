@@ -71,9 +71,7 @@ impl<'a> Rows<'a> {
                 let label = format!("length {}", self.pair([*from, *to])?);
                 let [a, b] = [*from, *to].map(|id| self.editing.drawn.inside(id));
                 let long = f64::hypot(b[0] - a[0], b[1] - a[1]);
-                let value = self.editing.usual(long);
-                let shown = shown(long, "m");
-                self.read(&label, &value, shown.as_deref(), Some("m"));
+                self.read(&label, "", Some(long));
             }
         }
         let joints = mechanism.joints.iter();
@@ -145,7 +143,6 @@ impl<'a> Rows<'a> {
             &format!("joint {name}"),
             &format!("{kind}: {from}, {to}"),
             None,
-            None,
         );
         Ok(())
     }
@@ -156,7 +153,7 @@ impl<'a> Rows<'a> {
         let value = self.editing.text.get(&path).unwrap_or_default().to_owned();
         let label = &*field.key;
         match &field.kind {
-            FieldKind::Number if value.starts_with('{') => self.read(label, &value, None, None),
+            FieldKind::Number if value.starts_with('{') => self.read(label, &value, None),
             FieldKind::Number => self.number(label, &path, None, &field.help),
             FieldKind::Numbers(count) => {
                 // A list whose default is zeros can be given by its elements.
@@ -172,7 +169,7 @@ impl<'a> Rows<'a> {
                 }
             }
             FieldKind::Other if value.is_empty() => {}
-            FieldKind::Other => self.read(label, &value, None, None),
+            FieldKind::Other => self.read(label, &value, None),
             FieldKind::Text | FieldKind::Flag | FieldKind::Choice(_) => {
                 let (kind, choices) = match &field.kind {
                     FieldKind::Choice(words) => {
@@ -204,7 +201,7 @@ impl<'a> Rows<'a> {
         });
         let is_plain = value.parse::<f64>().is_ok();
         let shown = number.and_then(|number| match unit {
-            Some("m" | "rad") => shown(number, unit?),
+            Some("m" | "rad") => None,
             _ if is_plain => None,
             unit => Some(format!(
                 "{} {}",
@@ -215,22 +212,15 @@ impl<'a> Rows<'a> {
         let shown = shown.map(|shown| shown.trim_end().to_owned());
         self.list.push(json!({
             "label": label, "path": path, "element": element, "value": value, "shown": shown,
-            "unit": unit, "type": "number", "help": help,
+            "number": number, "unit": unit, "type": "number", "help": help,
         }));
     }
 
-    fn read(&mut self, label: &str, value: &str, shown: Option<&str>, unit: Option<&str>) {
+    /// Adds what is only read: a text, or a length \[m\].
+    fn read(&mut self, label: &str, value: &str, length: Option<f64>) {
+        let unit = length.map(|_| "m");
         self.list.push(json!({
-            "label": label, "path": [], "value": value, "shown": shown, "unit": unit, "type": "read",
+            "label": label, "path": [], "value": value, "number": length, "unit": unit, "type": "read",
         }));
-    }
-}
-
-/// Shows a length in millimetres, an angle in degrees.
-fn shown(value: f64, unit: &str) -> Option<String> {
-    match unit {
-        "m" => Some(format!("{} mm", rounded(1_000.0 * value, DIGITS))),
-        "rad" => Some(format!("{}°", rounded(value.to_degrees(), DIGITS))),
-        _ => None,
     }
 }
