@@ -234,7 +234,7 @@ pub(super) fn inside([x, y, phi]: [f64; 3], at: [f64; 2]) -> [f64; 2] {
 /// would be chance.
 pub(super) fn neat(value: f64, slack: f64) -> f64 {
     /// Least distance of decimals over the one within which they are found.
-    const RARE: f64 = 1e4;
+    const RARE: f64 = 1e3;
     let scales = (0..15).map(|decimals| 10.0_f64.powi(decimals));
     let rare = scales.take_while(|scale| RARE * slack * scale <= 1.0);
     let mut decimals = rare.map(|scale| (value * scale).round() / scale);

@@ -5,7 +5,11 @@ use serde_json::{Value, json};
 
 use super::super::gesture::{self, Editing, Refusal};
 use super::super::request::Gesture;
+use biela::kinematics::{Error, Fit};
+use biela::mechanism::rounded;
 
+/// Digits of a length that lets a mechanism close: more end in the rounding of the pose from which it follows.
+const FIT_DIGITS: usize = 10;
 /// Part of the drawing's size by which a duplicate is beside its body.
 const BESIDE: f64 = 0.2;
 
@@ -20,6 +24,34 @@ impl<'a> Actions<'a> {
         Self {
             editing,
             list: Vec::new(),
+        }
+    }
+
+    /// Offers the length with which a mechanism closes that does not close now.
+    pub(super) fn mechanism(&mut self) {
+        let Some(Error::Contradiction { fit: Some(fit), .. }) = &self.editing.drawn.open else {
+            return;
+        };
+        if let Fit::Length {
+            origin,
+            between: Some(ends),
+            length,
+            ..
+        } = &**fit
+            && let Some(body) = origin.split('`').nth(1)
+        {
+            let markers = ends.each_ref().map(|end| format!("{body}.{end}"));
+            let value = rounded(*length, FIT_DIGITS);
+            let label = format!(
+                "Let it fit: {} to {}, {} mm",
+                markers[0],
+                markers[1],
+                1e3 * value
+            );
+            self.offer(
+                &label,
+                &json!({ "kind": "length", "markers": markers, "value": value }),
+            );
         }
     }
 

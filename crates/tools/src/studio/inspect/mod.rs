@@ -38,7 +38,10 @@ pub(super) fn inspect(document: &Document, names: &[&str]) -> Result<Value, Refu
     let (title, kind) = title(&editing, names)?;
     let (mut rows, mut actions) = (Rows::new(&editing), Actions::new(&editing));
     match (kind, names) {
-        ("mechanism", _) => rows.mechanism(),
+        ("mechanism", _) => {
+            rows.mechanism();
+            actions.mechanism();
+        }
         ("point", markers) => {
             for marker in markers {
                 rows.marker(marker, marker);

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::{EMPTY, Host, act, state, studio};
+use super::{EMPTY, Host, act, ask, state, studio};
 use crate::page::{Outcome, Session};
 use biela::mechanism::{DriverId, Source};
 
@@ -241,4 +241,29 @@ fn wheels_on_points_of_the_grid_mesh_to_rounding() {
     );
     let radius = number(&file["joints"]["mesh"]["radius"]);
     assert!((radius - f64::hypot(0.03, 0.06)).abs() < 1e-16, "{radius}");
+}
+
+#[test]
+fn a_length_that_was_rounded_is_offered_as_it_fits() {
+    let mut host = studio(EMPTY);
+    for x in [0.0, 0.2, 0.4] {
+        link(
+            &mut host,
+            &[ground([x, 0.0]), json!({ "at": [x + 0.08, 0.06] })],
+        );
+    }
+    link(&mut host, &["link.B", "link_2.D", "link_3.F"].map(marker));
+    drive(&mut host, "A");
+    // The last digit of one of three equal cranks, as rounding leaves it.
+    let worn = host.text().replace("F = [0.1, 0]", "F = [0.10001, 0]");
+    let view = ask(&mut host, &json!({ "do": "type", "text": worn }));
+    assert_eq!(state(&view), "open", "{}", view["status"]);
+    let form = ask(&mut host, &json!({ "do": "inspect", "names": [] }));
+    let action = &form["actions"][0];
+    assert_eq!(action["label"], "Let it fit: link_3.E to link_3.F, 100 mm");
+    let view = act(&mut host, &action["gesture"]);
+    assert_eq!(state(&view), "driven", "{}", view["status"]);
+    assert!(host.text().contains("F = [0.1, 0]"), "{}", host.text());
+    let form = ask(&mut host, &json!({ "do": "inspect", "names": [] }));
+    assert_eq!(form["actions"], json!([]));
 }

@@ -26,7 +26,8 @@ fn written(form: &Value) -> String {
         word(&form["kind"])
     )];
     for row in form["rows"].as_array().expect("rows") {
-        let parts = ["label", "type", "value", "shown", "number", "unit"].map(|key| word(&row[key]));
+        let parts =
+            ["label", "type", "value", "shown", "number", "unit"].map(|key| word(&row[key]));
         lines.push(parts.join(" | ").trim_end_matches([' ', '|']).to_owned());
     }
     for action in form["actions"].as_array().expect("actions") {
