@@ -200,9 +200,10 @@ impl Force {
     fn describe(&self, mechanism: &Mechanism) -> String {
         match &self.load {
             _ if !self.description.is_empty() => self.description.clone(),
-            Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
+            load @ (Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. }) => {
                 let word = coordinate.kind.effort_word();
-                format!("{word} along {}", coordinate.describe(mechanism))
+                let along = coordinate.describe(mechanism);
+                format!("{word}{} along {along}", load.origin())
             }
             Load::Marker { marker, .. } => {
                 format!("force and torque at `{}`", mechanism.marker_path(*marker))
@@ -401,6 +402,17 @@ impl Load {
         match self.cause() {
             Some(PassiveCause::Friction(law)) => Some(law),
             _ => None,
+        }
+    }
+
+    /// Returns the part of a description that tells a stop and friction from other forces.
+    fn origin(&self) -> &'static str {
+        match (self.cause(), self.law()) {
+            (Some(PassiveCause::Stop(_)), _) => " of a stop",
+            (Some(PassiveCause::Friction(_)), _) => " of friction",
+            (_, Some(ForceLaw { stop: Some(_), .. })) => " of a stop",
+            (_, Some(law)) if law.friction.is_some() => " of friction",
+            _ => "",
         }
     }
 

@@ -2,8 +2,8 @@
 
 use super::force_quantity::ForceQuantity;
 use super::{
-    CamFollower, Coordinate, CoordinateEquation, CoordinateKind, DriverId, Joint, JointKind, Load,
-    Mechanism, Unit,
+    CamFollower, Coordinate, CoordinateEquation, CoordinateKind, DriverId, ForceComponent, Joint,
+    JointKind, Load, Mechanism, Unit,
 };
 
 /// Components of a reaction that a joint can exert.
@@ -75,9 +75,21 @@ pub struct NamedForce {
     pub quantity: ForceQuantity,
 }
 
+impl From<ForceComponent> for NamedForce {
+    fn from(component: ForceComponent) -> Self {
+        Self {
+            name: component.name,
+            description: component.description,
+            unit: component.unit,
+            quantity: ForceQuantity::Applied(component.force, component.component),
+        }
+    }
+}
+
 impl Mechanism {
     /// Returns all forces, energies and inertias of a mechanism with dynamics, whether outputs or
-    /// not: of drivers, reactions of joints and constraints, given sizes of forces, energies.
+    /// not, but the forces that are inputs: of drivers, reactions of joints and constraints, given sizes
+    /// of forces, energies.
     #[must_use]
     pub fn named_forces(&self) -> Vec<NamedForce> {
         let mut list = List(Vec::new());
@@ -85,12 +97,7 @@ impl Mechanism {
             list.add_drivers(self);
             list.add_reactions(self);
             list.0
-                .extend(self.given_forces().into_iter().map(|given| NamedForce {
-                    name: given.name,
-                    description: given.description,
-                    unit: given.unit,
-                    quantity: ForceQuantity::Applied(given.force, given.component),
-                }));
+                .extend(self.given_forces().into_iter().map(NamedForce::from));
             list.add_energies();
         }
         list.0

@@ -222,6 +222,15 @@ def test_inputs_are_entries_of_drive(mechanism):
         crank.run(t=t, drive=torque, inputs=torque)
 
 
+def test_inputs_have_columns(mechanism):
+    crank = mechanism("slider_crank_motor")
+    t = np.linspace(0, 0.3, 4)
+    assert_array_equal(crank.run(t=t)["motor.effort"], 0.0 * t)
+    assert_array_equal(crank.run(t=t, drive={"motor.effort": 1 + t})["motor.effort"], 1 + t)
+    with pytest.raises(biela.UsageError, match="give the values of `voltage` from there on"):
+        mechanism("wiper_motor").run(t=1 + t, drive={"voltage": 1 + t})
+
+
 def test_the_start_of_a_freedom_is_set(mechanism):
     pendulum = mechanism("pendulum_free")
     t = [0.0, 0.1, 0.5]

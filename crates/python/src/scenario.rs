@@ -119,7 +119,7 @@ impl Scenario {
             let driver = &self.driven.drivers[samples.driver.index()];
             driver.name.clone()
         });
-        let inputs = self.driven.force_inputs();
+        let inputs = self.driven.load_inputs();
         let loads = self
             .loads
             .iter()

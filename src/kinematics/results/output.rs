@@ -10,8 +10,8 @@ use crate::kinematics::path::{Path, Rates};
 use crate::kinematics::solver::Solver;
 use crate::kinematics::system::System;
 use crate::mechanism::{
-    COMPONENTS, Coordinate, CoordinateKind, DriverId, Dual, Indeterminate, Jet, Mechanism, Order,
-    SUFFIXES, Signal, Unit,
+    COMPONENTS, Coordinate, CoordinateKind, DriverId, Dual, Indeterminate, Jet, Mechanism,
+    NamedForce, Order, SUFFIXES, Signal, Unit,
 };
 
 /// A quantity that a run gives, such as `rod.omega`.
@@ -145,7 +145,8 @@ impl OutputSource {
 }
 
 impl Output {
-    /// Returns value, velocity and acceleration of every driver, then all others.
+    /// Returns value, velocity and acceleration of every driver, then those of a
+    /// [host](Self::of_host), and last the sizes of forces that are inputs.
     #[must_use]
     pub fn all(mechanism: &Arc<Mechanism>) -> Vec<Self> {
         let mut list = List::default();
@@ -155,6 +156,8 @@ impl Output {
         list.add_places(mechanism);
         let omitted = omitted_reactions(mechanism);
         list.add_derived_and_forces(mechanism, &omitted);
+        let inputs = mechanism.force_inputs().into_iter();
+        list.add_forces(inputs.map(NamedForce::from));
         list.0
     }
 
@@ -337,8 +340,12 @@ impl List {
             _ => true,
         };
         let forces = mechanism.named_forces().into_iter();
-        let forces =
-            forces.filter(|force| is_wanted(force.quantity) && !is_among(omitted, force.quantity));
+        self.add_forces(
+            forces.filter(|force| is_wanted(force.quantity) && !is_among(omitted, force.quantity)),
+        );
+    }
+
+    fn add_forces(&mut self, forces: impl Iterator<Item = NamedForce>) {
         self.0.extend(forces.map(|force| Output {
             name: force.name,
             description: force.description,

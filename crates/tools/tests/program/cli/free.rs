@@ -237,3 +237,54 @@ fn friction_holds_or_is_left_out() {
         assert!(found.starts_with(&expected), "{found}");
     }
 }
+
+/// An effort that nobody drives is zero in a column behind all others; a file of an earlier run drives it.
+#[test]
+fn efforts_that_are_inputs_have_columns() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rod.toml");
+    let load = "forces.load = { marker = \"rod.O\" }\n";
+    std::fs::write(&file, ROD.replace("START", "0") + load).expect("it can be written");
+    let signals = folder.path().join("signals.csv");
+    std::fs::write(&signals, "time,motor.effort,load.fy\n0,1,4\n1,2,4\n")
+        .expect("it can be written");
+    let rows = |arguments: &[&str]| -> Vec<Vec<f64>> {
+        let file = file.to_str().expect("UTF-8");
+        let run = [
+            "run",
+            file,
+            "--stop",
+            "1",
+            "--step",
+            "0.5",
+            "-v",
+            "motor,load",
+        ];
+        let csv = stdout(&biela(&[&run[..], arguments].concat()).success());
+        let mut lines = csv.lines();
+        assert_eq!(
+            lines.next(),
+            Some("time,motor.effort,load.fx,load.fy,load.torque")
+        );
+        let numbers = |line: &str| {
+            line.split(',')
+                .map(|x| x.parse().expect("a number"))
+                .collect()
+        };
+        lines.map(numbers).collect()
+    };
+    let driven = |sizes: [[f64; 2]; 3]| {
+        let rows = [0.0, 0.5, 1.0].into_iter().zip(sizes);
+        rows.map(|(t, [effort, fy])| vec![t, effort, 0.0, fy, 0.0])
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(rows(&[]), driven([[0.0; 2]; 3]));
+    let by_file = rows(&["--input", signals.to_str().expect("UTF-8")]);
+    assert_eq!(by_file, driven([[1.0, 4.0], [1.5, 4.0], [2.0, 4.0]]));
+    let by_option = rows(&["--drive", "motor.effort=1+t", "--drive", "load.fy=4"]);
+    assert_eq!(by_option, by_file);
+    let all = stdout(&biela(&["run", file.to_str().expect("UTF-8"), "--stop", "0"]).success());
+    let header = all.lines().next().unwrap_or_default();
+    let last = "energy.potential,motor.effort,load.fx,load.fy,load.torque";
+    assert!(header.ends_with(last), "{header}");
+}

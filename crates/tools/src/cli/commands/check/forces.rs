@@ -91,10 +91,13 @@ impl Forces {
             let OutputSource::Force(force) = output.source else {
                 return None;
             };
-            let trivial = matches!(
-                force,
-                ForceQuantity::Power(_) | ForceQuantity::Bias(_) | ForceQuantity::KineticEnergy
-            );
+            let trivial = match force {
+                ForceQuantity::Power(_) | ForceQuantity::Bias(_) | ForceQuantity::KineticEnergy => {
+                    true
+                }
+                ForceQuantity::Applied(force, _) => mechanism.forces[force].load.is_input(),
+                _ => false,
+            };
             let value = solution.force(force);
             let rounding = match force {
                 ForceQuantity::Effort(driver) => solution.effort_rounding(solver, driver),
