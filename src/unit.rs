@@ -1,5 +1,9 @@
 //! Units of quantities. All inside is SI; a unit serves the FMU's description and labels.
 
+mod written;
+
+pub use written::{UnitFault, size_of_unit, symbols};
+
 /// A unit of the International System with its exponents of the base units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
@@ -24,6 +28,8 @@ pub struct Dimension {
     pub rad: i8,
     /// Exponent of the ampere.
     pub a: i8,
+    /// Exponent of the kelvin.
+    pub k: i8,
 }
 
 /// A unit for showing values to people: shown = factor × SI.
@@ -42,7 +48,14 @@ const fn dimension(kg: i8, m: i8, s: i8, rad: i8) -> Dimension {
 }
 
 const fn electric([kg, m, s, rad]: [i8; 4], a: i8) -> Dimension {
-    Dimension { kg, m, s, rad, a }
+    Dimension {
+        kg,
+        m,
+        s,
+        rad,
+        a,
+        k: 0,
+    }
 }
 
 const LENGTH: Dimension = Dimension::LENGTH;
@@ -61,28 +74,58 @@ impl Dimension {
     /// Dimension of an angular velocity.
     pub const ANGULAR_VELOCITY: Self = dimension(0, 0, -1, 1);
 
-    fn exponents(self) -> [i8; 5] {
-        [self.kg, self.m, self.s, self.rad, self.a]
+    fn exponents(self) -> [i8; 6] {
+        [self.kg, self.m, self.s, self.rad, self.a, self.k]
     }
 
     /// Returns the base units that it has, with their exponents.
     pub fn base_units(self) -> impl Iterator<Item = (&'static str, i8)> {
-        let all = ["kg", "m", "s", "rad", "A"]
+        let all = ["kg", "m", "s", "rad", "A", "K"]
             .into_iter()
             .zip(self.exponents());
         all.filter(|(_, exponent)| *exponent != 0)
     }
 
-    fn of(exponents: [Option<i8>; 5]) -> Option<Self> {
-        let [kg, m, s, rad, a] = exponents;
-        Some(electric([kg?, m?, s?, rad?], a?))
+    fn of(exponents: [Option<i8>; 6]) -> Option<Self> {
+        let [kg, m, s, rad, a, k] = exponents;
+        Some(Self {
+            k: k?,
+            ..electric([kg?, m?, s?, rad?], a?)
+        })
+    }
+
+    /// Returns a unit of this dimension, as a file writes it: `N`, `m3/s`, `kg/(s2.K)`.
+    #[must_use]
+    pub fn symbol(self) -> String {
+        if let Some(unit) = Unit::ALL.iter().find(|unit| unit.dimension == self) {
+            return unit.name.to_owned();
+        }
+        let part = |is_above: bool| {
+            let powers = self.base_units();
+            let powers = powers.filter(|(_, power)| (*power > 0) == is_above);
+            let powers = powers.map(|(name, power)| match power.unsigned_abs() {
+                1 => name.to_owned(),
+                power => format!("{name}{power}"),
+            });
+            powers.collect::<Vec<_>>()
+        };
+        let [above, below] = [true, false].map(part);
+        let above = match above.is_empty() {
+            true => "1".to_owned(),
+            false => above.join("."),
+        };
+        match &below[..] {
+            [] => above,
+            [below] => format!("{above}/{below}"),
+            below => format!("{above}/({})", below.join(".")),
+        }
     }
 
     /// Returns the dimension of a product; `None` if an exponent is too large.
     #[must_use]
     pub fn times(self, other: Self) -> Option<Self> {
         let (a, b) = (self.exponents(), other.exponents());
-        Self::of([0, 1, 2, 3, 4].map(|k| a[k].checked_add(b[k])))
+        Self::of([0, 1, 2, 3, 4, 5].map(|k| a[k].checked_add(b[k])))
     }
 
     /// Returns the dimension of a power; `None` if an exponent is too large or no whole number.
@@ -99,8 +142,11 @@ impl Dimension {
     /// length: radians count only where nothing else does.
     #[must_use]
     pub fn agrees_with(self, other: Self) -> bool {
-        let is_same = [self.kg, self.m, self.s, self.a] == [other.kg, other.m, other.s, other.a];
-        is_same || self == Self::ONE || other == Self::ONE
+        let without_angle = |dimension: Self| Self {
+            rad: 0,
+            ..dimension
+        };
+        without_angle(self) == without_angle(other) || self == Self::ONE || other == Self::ONE
     }
 }
 
@@ -156,13 +202,22 @@ impl Unit {
     pub const VOLT: Self = Self::new("V", electric([1, 2, -3, 0], -1));
     /// `ohm`.
     pub const OHM: Self = Self::new("ohm", electric([1, 2, -3, 0], -2));
+    /// `K`.
+    pub const KELVIN: Self = Self::new(
+        "K",
+        Dimension {
+            k: 1,
+            ..Dimension::ONE
+        },
+    );
     /// `N.m/A`: constant of a motor.
     pub const NEWTON_METRE_PER_AMPERE: Self = Self::new("N.m/A", electric([1, 2, -2, 0], -1));
     /// `V.s/rad`: the same.
     pub const VOLT_SECOND_PER_RADIAN: Self = Self::new("V.s/rad", electric([1, 2, -2, -1], -1));
 
-    /// Every unit that a file may name, in the order of the format's documentation.
-    pub const ALL: [Self; 26] = [
+    /// The units that have names here, in the order of the format's documentation; a file may name any
+    /// product and quotient of SI units.
+    pub const ALL: [Self; 27] = [
         Self::ONE,
         Self::METRE,
         Self::RADIAN,
@@ -189,6 +244,7 @@ impl Unit {
         Self::OHM,
         Self::NEWTON_METRE_PER_AMPERE,
         Self::VOLT_SECOND_PER_RADIAN,
+        Self::KELVIN,
     ];
 
     /// Returns the unit as it stands behind a number: a blank and its symbol, nothing for a plain
@@ -231,10 +287,11 @@ impl Unit {
         }
     }
 
-    /// Returns the unit with this symbol.
+    /// Returns the SI unit that is written like this; `None` for another unit, and for what is none.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|unit| unit.name == name)
+        let known = Self::ALL.into_iter().find(|unit| unit.name == name);
+        known.or_else(|| DisplayUnit::read(name).ok()?.as_si())
     }
 
     /// Returns the display units of the same dimension.
@@ -270,7 +327,8 @@ impl DisplayUnit {
     /// `g`.
     pub const GRAM: Self = Self::new("g", 1e3, MASS);
 
-    /// Every display unit that a file may name, in the order of the format's documentation.
+    /// The units that messages propose, in the order of the format's documentation; a file may name any
+    /// product and quotient of symbols.
     pub const ALL: [Self; 7] = [
         Self::MILLIMETRE,
         Self::CENTIMETRE,
@@ -289,10 +347,12 @@ impl DisplayUnit {
         }
     }
 
-    /// Returns the display unit with this symbol.
+    /// Returns it as an SI unit, if it is one.
     #[must_use]
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|unit| unit.name == name)
+    pub fn as_si(self) -> Option<Unit> {
+        let known = || Unit::ALL.into_iter().find(|unit| unit.name == self.name);
+        let is_si = self.factor.to_bits() == 1.0_f64.to_bits();
+        is_si.then(|| known().unwrap_or(Unit::new(self.name, self.dimension)))
     }
 }
 
@@ -308,9 +368,76 @@ mod tests {
             assert_eq!(Unit::by_name(unit.name), Some(unit));
         }
         for unit in DisplayUnit::ALL {
-            assert_eq!(DisplayUnit::by_name(unit.name), Some(unit));
+            assert_eq!(DisplayUnit::read(unit.name), Ok(unit));
         }
         assert_eq!(Unit::by_name("mm"), None);
+    }
+
+    #[test]
+    fn units_are_products_and_quotients_of_symbols() {
+        for (text, symbol, size) in [
+            ("kN", "N", 1e3),
+            ("kN.m", "N.m", 1e3),
+            ("bar", "Pa", 1e5),
+            ("mbar", "Pa", 1e2),
+            ("l/min", "m3/s", 1e-3 / 60.0),
+            ("m3/s", "m3/s", 1.0),
+            ("m3.s-1", "m3/s", 1.0),
+            ("g.mm2", "kg.m2", 1e-9),
+            ("kW.h", "N.m", 3.6e6),
+            ("N/mm2", "Pa", 1e6),
+            ("W/(m2.K)", "kg/(s3.K)", 1.0),
+            ("m/s/s", "m/s2", 1.0),
+            ("(m/s)2", "m2/s2", 1.0),
+            ("1/min", "1/s", 1.0 / 60.0),
+            ("deg/rev", "1", 1.0 / 360.0),
+            ("daN", "N", 10.0),
+            ("µm", "m", 1e-6),
+            ("C", "s.A", 1.0),
+            ("V.s/m2", "kg/(s2.A)", 1.0),
+            ("%", "1", 0.01),
+            // A pound per square inch is 6894.757 293 168 Pa.
+            ("lbf/inch2", "Pa", 6_894.757_293_168_361),
+        ] {
+            let unit = DisplayUnit::read(text).expect(text);
+            assert_eq!(unit.dimension.symbol(), symbol, "{text}");
+            let found = size_of_unit(text).expect(text);
+            assert!((found / size - 1.0).abs() <= 4.0 * f64::EPSILON, "{text}");
+            assert!((found * unit.factor - 1.0).abs() <= 2.0 * f64::EPSILON);
+            let is_si = size.to_bits() == 1.0_f64.to_bits();
+            assert_eq!(Unit::by_name(text).is_some(), is_si, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_symbol_of_a_dimension_is_read_again() {
+        for text in ["W/(m2.K)", "V.s/m2", "1/(s.rad)", "A2.s4/kg", "N.m.s/rad"] {
+            let unit = DisplayUnit::read(text).expect(text);
+            let again = Unit::by_name(&unit.dimension.symbol()).expect(text);
+            assert_eq!(again.dimension, unit.dimension, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_unit_is_told() {
+        let fault = |text: &str| DisplayUnit::read(text).expect_err(text);
+        assert_eq!(fault("N.mx/s"), UnitFault::Symbol(2..4));
+        assert_eq!(fault("kh"), UnitFault::Symbol(0..2));
+        for (text, brackets) in [
+            ("W/m2.K", "W/(m2.K)"),
+            ("J/kg.K.s", "J/(kg.K.s)"),
+            ("m/s/m.s", "m/s/(m.s)"),
+        ] {
+            assert_eq!(fault(text), UnitFault::Ambiguous(brackets.to_owned()));
+            assert!(DisplayUnit::read(brackets).is_ok());
+        }
+        let long = "m.".repeat(40);
+        for text in [
+            "", " ", "m ", "m^2", "m²", "m.", ".m", "m//s", "(m", "m)", "2", "10/s", "m-", "m999",
+            &long,
+        ] {
+            assert_eq!(fault(text), UnitFault::Form, "{text}");
+        }
     }
 
     #[test]

@@ -48,8 +48,6 @@ WRONG = {
     "unknown-key_point",
     "unknown-key_slip",
     "unknown-marker",
-    "unknown-unit",
-    "unknown-unit_multiple",
     "wheel-sizes",
     "wrong-type",
     "wrong-type_markers",

@@ -280,3 +280,26 @@ fn grids_follow_their_values() {
         }
     }
 }
+
+#[test]
+fn units_are_factors_unless_a_parameter_has_their_name() {
+    let table = "table = [[0, 1], [90, 3]], law = \"linear\"";
+    let mechanism = with_functions(&format!(
+        "[functions]\n\
+         gas = {{ {table}, scale = [\"deg\", \"bar\"] }}\n\
+         flow = {{ {table}, scale = [\"mm/s\", \"l/min\"] }}\n\
+         own = {{ {table}, scale = [\"k\", \"kN\"] }}\n"
+    ));
+    for (text, per_unit, size) in [
+        ("gas(t)", std::f64::consts::PI / 180.0, 1e5),
+        ("flow(t)", 1e-3, 1e-3 / 60.0),
+        // `k` is a parameter.
+        ("own(t)", 1.5, 1e3),
+    ] {
+        let found = at(&call(&mechanism, text), 45.0 * per_unit);
+        assert!(
+            (found / (2.0 * size) - 1.0).abs() < 4.0 * f64::EPSILON,
+            "{text}"
+        );
+    }
+}

@@ -10,8 +10,8 @@ use super::context::Context;
 use super::coordinate::{ClearanceKeys, CoordinateKeys, MeasureKeys};
 use super::kind::{AnyOf, Entry, Item, Kind, Text, schema};
 use super::number::NUMBER;
-use super::parameter::SiUnit;
 use super::table::table;
+use super::unit::SI_UNIT;
 
 table! {
     /// An output computed from others, without velocity and acceleration.
@@ -21,7 +21,7 @@ table! {
         #[required("\"-travel.velocity/shock.velocity\"")]
         value: &'a Value<'a> = Unread,
         /// SI unit of the value.
-        unit: Unit = SiUnit,
+        unit: Unit = SI_UNIT,
         /// Description in one line.
         description: String = Text,
     }

@@ -16,9 +16,10 @@ use super::context::Context;
 use super::derived::Unread;
 use super::kind::{AnyOf, Array, Entry, ExternalName, Item, Kind, Text, schema};
 use super::motion::{ENDS, LAW};
-use super::number::{Limit, NUMBER, Quantity};
+use super::number::{Limit, Quantity};
 use super::points::PointKeys;
 use super::table::table;
+use super::unit::Factor;
 
 table! {
     /// A function given by an expression.
@@ -53,8 +54,8 @@ table! {
         file: &'a str = ExternalName,
         /// Number of arguments: 2.
         arguments: usize = ARGUMENTS,
-        /// Factors of both arguments and of the values.
-        scale: [Quantity; 3] = Array::new("[1, 1, 1]", [NUMBER; 3]),
+        /// Factors of both arguments and of the values: numbers or units.
+        scale: [Quantity; 3] = Array::new("[1, 1, 1]", [const { Factor }; 3]),
         /// Way from each point to the next, spline or linear; a spline if left out.
         law: Interpolation = LAW,
         /// Course outside: clamped, linear or zero; clamped if left out.

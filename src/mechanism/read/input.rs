@@ -5,14 +5,14 @@ use crate::mechanism::{Input, Unit};
 use super::context::Context;
 use super::kind::{Entry, Text};
 use super::number::{NUMBER, Quantity};
-use super::parameter::SiUnit;
 use super::table::table;
+use super::unit::SI_UNIT;
 
 table! {
     /// A number from outside: an FMI input.
     struct InputKeys<'a> {
         /// SI unit of its values.
-        unit: Unit = SiUnit,
+        unit: Unit = SI_UNIT,
         /// Value at the start; zero if left out.
         start: Quantity = NUMBER,
         /// Lower limit, which advises.

@@ -42,6 +42,7 @@ mod settings;
 mod shape;
 mod stop;
 mod table;
+mod unit;
 mod usage;
 
 #[cfg(test)]

@@ -6,16 +6,15 @@ use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::expression::CONSTANTS;
-use crate::mechanism::syntax;
 use crate::mechanism::wording::{either, quoted};
 use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, ParameterId, Unit};
 
 use super::context::Context;
-use super::kind::{Described, Entry, Flag, Item, Kind, Text, Word, schema, word_here};
+use super::kind::{Described, Entry, Flag, Kind, Text};
 use super::number::NUMBER;
 use super::number::{Formula, Limit, Quantity};
 use super::table::{Field, table};
+use super::unit::{ShownUnit, SiUnit};
 
 table! {
     /// A parameter with attributes.
@@ -24,9 +23,9 @@ table! {
         #[required("0.1")]
         value: Quantity = Formula(&[]),
         /// SI unit of the value.
-        unit: Unit = SiUnit,
+        unit: Unit = SiUnit { has_display: true },
         /// Unit in which hosts show the value.
-        display: DisplayUnit = DISPLAY_UNIT,
+        display: DisplayUnit = ShownUnit,
         /// Smallest permitted value.
         min: Quantity = Formula(&[]),
         /// Largest permitted value.
@@ -47,115 +46,6 @@ impl Described for AnyParameter {
     fn schema() -> serde_json::Value {
         serde_json::json!({ "anyOf": [NUMBER.schema(), ParameterKeys::schema()] })
     }
-}
-
-const UNIT: Word<Unit> = Word::new("unit", code::UNKNOWN_UNIT, || {
-    Unit::ALL.map(|unit| (unit.name, unit)).to_vec()
-})
-.with_synonyms(|text| synonym(text).map(word_here));
-
-/// Signs that stand for a product or a power, or for nothing.
-const SIGNS: [char; 5] = ['.', '*', '·', '^', ' '];
-
-/// Returns a unit without signs: `Nm` of `N.m`, `N*m` and `N m`.
-fn letters(unit: &str) -> String {
-    unit.replace(SIGNS, "").replace('²', "2")
-}
-
-/// Returns the unit that is written in another way: `N.m` of `Nm`.
-fn synonym(text: &str) -> Option<&'static str> {
-    match text {
-        "J/s" => Some("W"),
-        "-" => Some("1"),
-        "volt" | "Volt" => Some("V"),
-        "ampere" | "amp" => Some("A"),
-        "Ohm" | "Ω" => Some("ohm"),
-        "pascal" | "N/m2" | "N/m²" => Some("Pa"),
-        _ => {
-            // `Nm`, `N*m`, `m/s²`, `kg m^2`: other signs between the same letters.
-            let is_meant = |name: &&str| {
-                !name.eq_ignore_ascii_case(text)
-                    && letters(name).eq_ignore_ascii_case(&letters(text))
-            };
-            Unit::ALL.iter().map(|unit| unit.name).find(is_meant)
-        }
-    }
-}
-
-/// Returns the unit of which another one is a decimal multiple: `N` of `kN`, `N/m` of `kN/mm`.
-fn unit_of_multiple(text: &str) -> Option<&'static str> {
-    if Unit::by_name(text).is_some() || synonym(text).is_some() {
-        return None;
-    }
-    let letters = letters(text);
-    let mut names = Unit::ALL.iter().map(|unit| unit.name);
-    names.find(|name| is_multiple(&letters, name))
-}
-
-/// Returns whether `letters` are those of the unit `name`, each of its symbols with or without a
-/// prefix.
-fn is_multiple(letters: &str, name: &str) -> bool {
-    const PREFIXES: [&str; 15] = [
-        "da", "p", "n", "µ", "μ", "u", "m", "c", "d", "h", "k", "K", "M", "G", "T",
-    ];
-    let rest = name
-        .split_inclusive(['.', '/'])
-        .try_fold(letters, |rest, symbol| {
-            // The kilogram has a prefix already.
-            let symbol = symbol.trim_end_matches('.').trim_start_matches('k');
-            let with = |prefix: &&str| rest.strip_prefix(*prefix)?.strip_prefix(symbol);
-            let with_prefix = PREFIXES.iter().find_map(with);
-            with_prefix.or_else(|| rest.strip_prefix(symbol))
-        });
-    rest == Some("")
-}
-
-const DISPLAY_UNIT: Word<DisplayUnit> = Word::new("display unit", code::UNKNOWN_UNIT, || {
-    DisplayUnit::ALL.map(|unit| (unit.name, unit)).to_vec()
-});
-
-/// SI unit; of a display unit the message says how to use it.
-pub(super) struct SiUnit;
-
-impl<'a> Kind<'a> for SiUnit {
-    type Value = Unit;
-
-    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Unit> {
-        let text = item.value.get_ref().as_str();
-        let Some(display) = text.and_then(DisplayUnit::by_name) else {
-            let Some((text, si)) = text.and_then(|text| Some((text, unit_of_multiple(text)?)))
-            else {
-                return UNIT.read(context, item);
-            };
-            let message = format!("no unit {}", quoted(text));
-            context
-                .error(code::UNKNOWN_UNIT, item.span(), message)
-                .suggest(format!("values are SI: give it in `{si}`"));
-            return None;
-        };
-        let name = display.name;
-        let mut units = Unit::ALL.iter();
-        let si = units.find(|unit| unit.dimension == display.dimension)?.name;
-        // The author of `value = 50, unit = "mm"` means millimetres.
-        let value = item.fields.table.get("value");
-        let number = value.filter(|value| syntax::number(value.get_ref()).is_some());
-        let number = number.and_then(|value| context.source.text().get(value.span()));
-        let constant = name.split('/').next();
-        let constant = constant.filter(|name| CONSTANTS.iter().any(|(known, _)| known == name));
-        let value = match (number, constant) {
-            (Some(number), Some(constant)) => format!("value = \"{number}*{constant}\", "),
-            _ => String::new(),
-        };
-        let message = format!("`{name}` is not an SI unit");
-        context
-            .error(code::UNKNOWN_UNIT, item.span(), message)
-            .suggest(format!(
-                "values are SI: `{value}unit = \"{si}\", display = \"{name}\"`"
-            ));
-        None
-    }
-
-    schema! { UNIT.schema() }
 }
 
 /// Most parameters of a cycle that its message names and marks.
@@ -357,7 +247,7 @@ impl<'a> Context<'a> {
         if display.dimension != unit.dimension {
             let fitting: Vec<&str> = unit.display_units().map(|unit| unit.name).collect();
             let help = match fitting.as_slice() {
-                [] => "leave `display` out".to_owned(),
+                [] => format!("expected a multiple or a part of `{}`", unit.name),
                 fitting => format!("expected {}", either(fitting)),
             };
             let message = format!("`{}` is no unit for showing `{}`", display.name, unit.name);

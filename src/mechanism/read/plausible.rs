@@ -243,15 +243,5 @@ fn describe(dimension: Dimension) -> String {
     if let Some((_, word)) = words.iter().find(|(known, _)| *known == dimension) {
         return (*word).to_owned();
     }
-    if let Some(unit) = Unit::ALL.iter().find(|unit| unit.dimension == dimension) {
-        return format!("a quantity in {}", unit.name);
-    }
-    let Dimension { kg, m, s, rad, a } = dimension;
-    let powers = [("kg", kg), ("m", m), ("s", s), ("rad", rad), ("A", a)];
-    let powers = powers.iter().filter(|(_, power)| *power != 0);
-    let powers = powers.map(|(name, power)| match power {
-        1 => (*name).to_owned(),
-        _ => format!("{name}{power}"),
-    });
-    format!("a quantity in {}", powers.collect::<Vec<_>>().join("."))
+    format!("a quantity in {}", dimension.symbol())
 }

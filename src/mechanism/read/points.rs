@@ -14,6 +14,7 @@ use super::context::Context;
 use super::kind::{Array, ExternalName, Item, Kind, schema};
 use super::number::{Limit, NUMBER, Number, Quantity};
 use super::table::table;
+use super::unit::Factor;
 
 table! {
     /// Points of a motion, of a contour or of a curve.
@@ -31,13 +32,13 @@ table! {
         file: &'a str = ExternalName,
         /// Names of the file's two columns; its first two if left out.
         columns: [&'a str; 2] = Array::new("[\"x\", \"y\"]", [ExternalName, ExternalName]),
-        /// Factors of the two columns.
+        /// Factors of the two columns: numbers, or the units in which they are, such as "bar".
         scale: [Quantity; 2] = FACTORS,
     }
 }
 
 const POINT: Array<Number, 2> = Array::new("[x, y]", [NUMBER; 2]);
-const FACTORS: Array<Number, 2> = Array::new("[1, \"deg\"]", [NUMBER; 2]);
+const FACTORS: Array<Factor, 2> = Array::new("[1, \"deg\"]", [const { Factor }; 2]);
 
 /// Array of points.
 struct Points;

@@ -235,9 +235,16 @@ pub(in crate::cli) fn varies(values: &[f64]) -> bool {
 
 /// Returns the axis for quantities of a unit, with its display unit.
 pub(in crate::cli) fn axis(unit: Unit) -> Axis {
-    let Dimension { kg, m, s, rad, a } = unit.dimension;
+    let Dimension {
+        kg,
+        m,
+        s,
+        rad,
+        a,
+        k,
+    } = unit.dimension;
     let label = match (kg, m, s, rad) {
-        _ if a != 0 => "value",
+        _ if [a, k] != [0; 2] => "value",
         _ if unit == Unit::NEWTON => "force",
         _ if unit == Unit::NEWTON_METRE => "torque",
         _ if unit == Unit::WATT => "power",

@@ -8,8 +8,8 @@ use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;
 use biela::kinematics::Output;
 use biela::mechanism::{
-    Mechanism, Order, Separated, Unit, comma_hint, did_you_mean, help, large_angles, quoted,
-    show_time,
+    DisplayUnit, Mechanism, Order, Separated, Unit, comma_hint, did_you_mean, help, large_angles,
+    quoted, show_time,
 };
 
 /// Most names of columns in a notice.
@@ -285,9 +285,8 @@ impl<'a> Column<'a> {
         let factor = if symbol == self.unit.name {
             Some(1.0)
         } else {
-            let mut others = others();
-            others
-                .find(|unit| unit.name == symbol)
+            let unit = DisplayUnit::read(symbol).ok();
+            unit.filter(|unit| unit.dimension == self.unit.dimension)
                 .map(|unit| unit.factor)
         };
         self.factor = factor.ok_or_else(|| {
