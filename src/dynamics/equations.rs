@@ -14,7 +14,7 @@ use crate::kinematics::{
     Blocked, Direction, DriverPath, EquationsOfMotion, ForceParts, Forces, KnownMotion, Path, Pose,
     Rates, Reason, Solution, Solver, SolverChoices,
 };
-use crate::mechanism::{DriverId, Jet, Mechanism, Order};
+use crate::mechanism::{BeyondPoints, DriverId, Jet, Mechanism, Order};
 
 /// A freedom feels no inertia of its own if this part of √M ∂q/∂u is left of it where those of others
 /// are taken out: some hundred roundings.
@@ -49,6 +49,9 @@ pub(super) struct Equations {
     rates: Rates,
     pub(super) watch: Watch,
     pub(super) turns: Turns,
+    /// Per function of the file: the first time \[s\] of an accepted point at which a force has called it
+    /// beyond its points, since this was asked last.
+    pub(super) beyond: Vec<Option<(f64, BeyondPoints)>>,
     /// The trial point at which the equations are.
     pub(super) point: Point,
     /// The last point accepted, with the solver's pose and choices there.
@@ -135,6 +138,7 @@ impl Equations {
                     .map(|f| f.load.corners())
                     .sum(),
             ),
+            beyond: vec![None; solver.mechanism().functions.list().len()],
             passive,
             is_plain: solver.pose().drivers.len() < 2 && !solver.has_ends_of_curves(),
             rates: Rates::new(unknowns),
@@ -145,7 +149,7 @@ impl Equations {
             choices: SolverChoices::default(),
             is_astray: false,
         };
-        equations.accept(solver);
+        equations.keep(solver);
         equations
     }
 
@@ -160,8 +164,18 @@ impl Equations {
         self.point.loads.len() - self.passive.loads()
     }
 
-    /// Accepts the point at which the equations and the solver are.
+    /// Accepts the point at which the equations and the solver are, with its forces.
     pub(super) fn accept(&mut self, solver: &Solver) {
+        let (pose, beyond) = (solver.pose(), &mut self.beyond);
+        self.forces
+            .visit_beyond(pose, &self.point.loads, &mut |found| {
+                beyond[found.function].get_or_insert((pose.time, found));
+            });
+        self.keep(solver);
+    }
+
+    /// Takes the point at which the equations and the solver are for the accepted one.
+    fn keep(&mut self, solver: &Solver) {
         self.accepted.copy_from(&self.point);
         self.watch.accept(solver.pose().time);
         self.turns.accept(self.forces.corners());
@@ -180,7 +194,7 @@ impl Equations {
         self.passive.resume(&state.modes);
         self.watch.begin();
         self.turns.begin();
-        self.accept(solver);
+        self.keep(solver);
         self.turns.accept(&state.corners);
     }
 

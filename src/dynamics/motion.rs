@@ -19,7 +19,7 @@ use super::overlap::Overlap;
 use super::state::FreeState;
 use super::trials::Trials;
 use crate::kinematics::{Direction, Pose, Rates, Solution, Solver};
-use crate::mechanism::{DriverId, Jet};
+use crate::mechanism::{BeyondPoints, DriverId, Jet};
 
 /// Time to the end of a curve at which the motion is there, as a part of the time or of the way to go:
 /// some roundings.
@@ -330,6 +330,7 @@ impl FreeMotion {
         velocity: impl Fn(DriverId) -> f64,
     ) -> Result<(), Error> {
         self.equations.passive.reset();
+        self.equations.beyond.fill(None);
         self.events.clear();
         self.go_on_with(solver, given, velocity)?;
         // Rest, sticking and the push of an elastic stop have begun before the start.
@@ -598,6 +599,13 @@ impl FreeMotion {
     /// Returns what has overlapped and the events since the last call.
     pub(super) fn news(&mut self) -> (impl Iterator<Item = Overlap>, impl Iterator<Item = Event>) {
         (self.overlaps.drain(..), self.events.drain(..))
+    }
+
+    /// Moves the calls of functions beyond their points since the last call to where they are told.
+    pub(super) fn take_beyond(&mut self, told: &mut [Option<(f64, BeyondPoints)>]) {
+        for (told, found) in told.iter_mut().zip(&mut self.equations.beyond) {
+            *told = told.or(found.take());
+        }
     }
 
     /// Gives a solution the rates of all drivers and the passive forces at the accepted point. Those that

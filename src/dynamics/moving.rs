@@ -14,7 +14,7 @@ use crate::kinematics::{
     self, Blocked, Budget, Direction, ForceParts, Forces, Output, Path, Pose, Progress, Solution,
     Solver, SolverChoices,
 };
-use crate::mechanism::{DriverId, Mechanism};
+use crate::mechanism::{BeyondPoints, DriverId, Mechanism};
 
 /// A mechanism that moves from one time to the next: along the paths of its drivers, and by forces where
 /// it has freedoms that were [released](Self::release).
@@ -48,6 +48,8 @@ pub struct Motion {
     /// Whether a free motion ends at events: [`advance`](Self::advance) may then not reach its time.
     pub ends_at_events: bool,
     pub(super) free: Option<Free>,
+    /// Calls of functions beyond their points that were found and not told.
+    pub(super) beyond: Vec<Option<(f64, BeyondPoints)>>,
     pub(super) way: Way,
     /// Whether forces are solved for the sake of contacts that pull alone.
     watches_contacts: bool,
@@ -73,7 +75,7 @@ pub(super) struct Free {
     /// Its state before it begins, in the file's own coordinates.
     fresh: FreeState,
     /// Whether it has begun; freedoms are held on the path otherwise.
-    is_released: bool,
+    pub(super) is_released: bool,
 }
 
 /// A pose of a motion, to which it can return.
@@ -101,6 +103,7 @@ impl Motion {
         Self {
             solution: Solution::new(&solver),
             told: Told::new(&solver, 0),
+            beyond: vec![None; solver.mechanism().functions.list().len()],
             solver,
             ends_at_events: false,
             free: None,

@@ -5,8 +5,10 @@ use std::fmt;
 use super::event::Event;
 use super::moving::{Free, Motion, Way};
 use super::overlap::Overlap;
-use crate::kinematics::{Approach, Crossing, LiftOff, OffPulley, Solver};
-use crate::mechanism::{Excursion, Mechanism, show_time};
+use crate::kinematics::{Approach, Crossing, LiftOff, OffPulley, Solution, Solver};
+use crate::mechanism::{
+    BeyondPoints, Excursion, Mechanism, ParameterId, PrescribedMotion, Variable, show_time, shown,
+};
 
 /// Something worth knowing of a motion, told once: its text is the sentence that all hosts tell.
 #[derive(Clone, Debug)]
@@ -25,6 +27,8 @@ pub enum Notice<'a> {
     OffPulley(OffPulley<'a>),
     /// A contact begins to pull.
     LiftOff(LiftOff<'a>),
+    /// A function is called beyond its points, at a time \[s\].
+    Beyond(BeyondPoints, &'a Mechanism, f64),
 }
 
 impl fmt::Display for Notice<'_> {
@@ -40,6 +44,17 @@ impl fmt::Display for Notice<'_> {
             Self::Excursion(excursion) => excursion.fmt(out),
             Self::OffPulley(left) => left.fmt(out),
             Self::LiftOff(lift_off) => lift_off.fmt(out),
+            Self::Beyond(beyond, mechanism, time) => {
+                let name = &mechanism.functions.list()[beyond.function].name;
+                let [start, end] = beyond.ends.map(shown);
+                write!(
+                    out,
+                    "{}: function `{name}` is called at {}, beyond its points from {start} to {end}: its \
+                     `ends` give the value",
+                    at(time),
+                    shown(beyond.argument)
+                )
+            }
         }
     }
 }
@@ -48,6 +63,7 @@ impl Motion {
     /// Tells what is worth knowing and was not told yet: overlaps, events, then what holds at the pose.
     /// The host asks after each [advance](Self::advance) and after each [solution](Self::solve).
     pub fn tell_notices<'a>(&'a mut self, mut tell: impl FnMut(Notice<'a>)) {
+        self.find_beyond();
         let (has_passed, goes_on) = (self.way == Way::Passed, self.way != Way::Stopped);
         if has_passed {
             self.way = Way::Told;
@@ -57,6 +73,7 @@ impl Motion {
             solution,
             told,
             free,
+            beyond,
             knows_contacts,
             ..
         } = self;
@@ -88,6 +105,57 @@ impl Motion {
         if let Some(forces) = solution.forces().filter(|_| *knows_contacts) {
             let lift_offs = solver.lift_offs(forces, &mut told.lifted);
             lift_offs.map(Notice::LiftOff).for_each(&mut tell);
+        }
+        let found = beyond.iter_mut().zip(&mut told.beyond_points);
+        for (found, is_told) in found {
+            if let Some((time, found)) = found.take().filter(|_| !*is_told) {
+                *is_told = true;
+                tell(Notice::Beyond(found, mechanism, time));
+            }
+        }
+    }
+
+    /// Finds functions that forces, prescribed motions and computed measures have called beyond their
+    /// points.
+    fn find_beyond(&mut self) {
+        let (mechanism, pose) = (&**self.solver.mechanism(), self.solver.pose());
+        if mechanism.functions.list().is_empty() || self.way == Way::Stopped {
+            return;
+        }
+        if let Some(free) = self.free.as_mut().filter(|free| free.is_released) {
+            free.motion.take_beyond(&mut self.beyond);
+        }
+        let all = &mut self.beyond;
+        let mut meet = |found: BeyondPoints| {
+            all[found.function].get_or_insert((pose.time, found));
+        };
+        let parameter = |id: ParameterId| pose.parameters[id.index()];
+        for driver in &mechanism.drivers {
+            if let Some(PrescribedMotion::Expression(motion)) = driver.motion() {
+                motion.visit_beyond(&parameter, &|_| pose.time, &mut meet);
+            }
+        }
+        if !self.knows_contacts {
+            return;
+        }
+        let Solution {
+            rates,
+            driver_rates,
+            loads,
+            ..
+        } = &self.solution;
+        if let Some(forces) = self.solution.forces() {
+            forces.visit_beyond(pose, loads, &mut meet);
+        }
+        for measure in &mechanism.derived {
+            let variable = |variable| match variable {
+                Variable::Signal(signal, order) => {
+                    order.of(self.solver.signal(signal, rates, driver_rates))
+                }
+                Variable::Force(quantity) => self.solution.force(quantity),
+                _ => f64::NAN,
+            };
+            measure.value.visit_beyond(&parameter, &variable, &mut meet);
         }
     }
 

@@ -15,6 +15,8 @@ pub struct Told {
     pub off_pulleys: Vec<bool>,
     /// Whether each contact pulls.
     pub lifted: Vec<bool>,
+    /// Whether a call of each function beyond its points was told.
+    pub beyond_points: Vec<bool>,
 }
 
 impl Told {
@@ -30,6 +32,7 @@ impl Told {
             inputs_beyond: vec![false; mechanism.inputs.len()],
             off_pulleys,
             lifted: vec![false; contacts],
+            beyond_points: vec![false; mechanism.functions.list().len()],
         }
     }
 }

@@ -8,6 +8,9 @@ use crate::mechanism::Corner;
 /// Distance of an argument from a point that is rounding, relative to both. Halved or doubled, a passage
 /// takes as many steps; the motion up to there differs by rounding.
 const POINT_ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Least part of a step that a cut leaves: where an argument begins to move from rest next to a point, the
+/// chord is far too steep. Halved, such a start takes fewer trials and more steps; doubled, the reverse.
+const LEAST_CUT: f64 = 0.1;
 /// Steps that are cut in a row before the end of the last one is taken for the instant: far more than the
 /// search takes.
 const MOST_CUTS: i32 = 80;
@@ -89,7 +92,8 @@ impl Turns {
                 // After cuts in a row the start counts as nearer (the Illinois method).
                 let value = from.max(0.0) * 0.5_f64.powi(self.cuts);
                 let aim = -0.5 * slack;
-                let time = start + h * (value - aim) / (value - to);
+                let part = (value - aim) / (value - to);
+                let time = start + h * part.max(LEAST_CUT);
                 first = Some(first.map_or(time, |first: f64| first.min(time)));
             }
         }

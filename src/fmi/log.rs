@@ -86,6 +86,8 @@ pub enum Advice {
     SingularPosition,
     /// Parts overlap.
     Overlap,
+    /// A function is called beyond its points.
+    Points,
 }
 
 impl Advice {

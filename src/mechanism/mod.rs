@@ -76,9 +76,9 @@ pub use diagnostic::{Diagnostic, Label, Severity};
 pub use excursion::{Excursion, Excursive};
 pub(crate) use expression::MOST_MOVING_POINTS;
 pub use expression::{
-    CalledPoints, Corner, Expression, ExpressionError, Function, FunctionBody, Functions, Grid,
-    Interpolation, LinearForm, MOST_ARGUMENTS, PointFunction, Table, Variable, constant, is_taken,
-    names_in,
+    BeyondPoints, CalledPoints, Corner, Expression, ExpressionError, Function, FunctionBody,
+    Functions, Grid, Interpolation, LinearForm, MOST_ARGUMENTS, PointFunction, Table, Variable,
+    constant, is_taken, names_in,
 };
 pub(crate) use expression::{Values, joins};
 pub use force::{

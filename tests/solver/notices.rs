@@ -120,3 +120,131 @@ fn events_are_told_once_and_only_of_freedoms_that_were_released() {
     assert!(events[0].contains("at stop `bottom`"), "{events:?}");
     assert!(sentences(&mut motion).is_empty());
 }
+
+/// A mass that falls from 0.5 m through a table of its height that ends at 0.3 m, and faster than that of
+/// its speed; its damper calls a third function, which repeats.
+const TABLES: &str = r#"
+    format = 1
+    name = "tables"
+    [functions]
+    push = { table = [[0.3, 0], [1, 0]], law = "linear", ends = "linear" }
+    drag = { of = ["v"], value = "0*slow(-v)" }
+    slow = { table = [[0, 0], [1.5, 1]], law = "linear" }
+    again = { table = [[0, 0], [0.1, 0]], law = "linear", ends = "periodic" }
+    [ground.markers]
+    O = [0, 0, "90*deg"]
+    [bodies.mass]
+    mass = 1
+    inertia = 1
+    markers = { O = [0, 0, "90*deg"] }
+    estimate = [0, 0.5, 0]
+    [joints.guide]
+    type = "translational"
+    markers = ["ground.O", "mass.O"]
+    [freedoms.height]
+    coordinate = "x"
+    markers = ["ground.O", "mass.O"]
+    start = 0.5
+    [forces.air]
+    coordinate = "x"
+    markers = ["ground.O", "mass.O"]
+    value = "push(position) + drag(velocity) + again(position)"
+    [simulation]
+    gravity = [0, -10]
+"#;
+
+#[test]
+fn a_function_that_is_called_beyond_its_points_is_told_once() {
+    let mechanism = parse(TABLES);
+    let (solver, mut path) = assembled(&mechanism);
+    let mut motion = Motion::new(solver);
+    motion.prepare_freedoms(Vec::new()).expect("a tolerance");
+    let nothing = |_: usize, _: f64| 0.0;
+    let given = GivenByPath {
+        path: &path,
+        load: nothing,
+    };
+    motion.release(&given).expect("it has a mass");
+    let mut found = Vec::new();
+    for step in 1..=30 {
+        let until = 0.01 * f64::from(step);
+        (path.start, path.duration) = (motion.pose().time, 0.01);
+        let given = GivenByPath {
+            path: &path,
+            load: nothing,
+        };
+        motion
+            .advance(&path, &given, until)
+            .expect("nothing stops it");
+        motion.tell_notices(|notice| {
+            let Notice::Beyond(beyond, mechanism, time) = &notice else {
+                panic!("{notice}")
+            };
+            let name = mechanism.functions.list()[beyond.function].name.clone();
+            found.push((name, *time, until, beyond.argument, notice.to_string()));
+        });
+    }
+    // It passes 0.3 m after 0.2 s, and falls at 1.5 m/s from 0.15 s on.
+    let expected = [
+        (
+            "slow",
+            0.15,
+            " is called at 1.",
+            " beyond its points from 0 to 1.5",
+        ),
+        (
+            "push",
+            0.2,
+            " is called at 0.",
+            " beyond its points from 0.3 to 1",
+        ),
+    ];
+    assert_eq!(found.len(), 2, "{found:?}");
+    for ((name, time, until, argument, text), (function, instant, at, points)) in
+        found.iter().zip(expected)
+    {
+        assert_eq!(name, function);
+        assert!(*time > instant && *time <= *until && until - instant < 0.0101);
+        let exact = match function {
+            "slow" => 10.0 * time,
+            _ => 0.5 - 5.0 * time * time,
+        };
+        assert!((argument - exact).abs() < 1e-6, "{text}");
+        assert!(text.contains(at) && text.contains(points), "{text}");
+    }
+}
+
+/// A measure and a motion that call functions beyond their points.
+#[test]
+fn measures_and_motions_beyond_points_are_told() {
+    let mechanism = parse(
+        r#"
+        format = 1
+        name = "driven"
+        functions.ramp = { table = [[0, 0], [1, 1]], law = "linear" }
+        functions.gauge = { table = [[0, 0], [0.5, 1]], law = "linear" }
+        ground.markers = { O = [0, 0] }
+        bodies.arm.markers = { O = [0, 0] }
+        joints.O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+        drivers.turn = { coordinate = "angle", markers = ["ground.O", "arm.O"], motion = "ramp(t)" }
+        measures.shown = { value = "gauge(turn.position)" }
+        "#,
+    );
+    let (solver, mut path) = assembled(&mechanism);
+    let mut motion = Motion::new(solver);
+    let mut told = Vec::new();
+    for step in 0..4 {
+        (path.start, path.duration) = (0.4 * f64::from(step), 0.4);
+        motion.follow(&path).expect("the way is free");
+        motion.take_rates();
+        motion.solve().expect("rates");
+        told.push(sentences(&mut motion));
+    }
+    let gauge = "t = 0.8 s: function `gauge` is called at 0.8, beyond its points from 0 to 0.5: its \
+                 `ends` give the value";
+    let ramp = gauge
+        .replace("t = 0.8", "t = 1.2")
+        .replace("`gauge` is called at 0.8", "`ramp` is called at 1.2")
+        .replace("to 0.5", "to 1");
+    assert_eq!(told, [vec![], vec![gauge.to_owned()], vec![ramp], vec![]]);
+}

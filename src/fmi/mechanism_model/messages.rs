@@ -262,6 +262,7 @@ fn report(notice: &Notice<'_>, log: &Logger) {
         Notice::Approach(..) => log.advise(Advice::SingularPosition, text),
         Notice::Excursion(_) => log.advise(Advice::Limits, text),
         Notice::Overlap(..) => log.advise(Advice::Overlap, text),
+        Notice::Beyond(..) => log.advise(Advice::Points, text),
         Notice::OffPulley(_) | Notice::LiftOff(_) => log.remark(text),
         Notice::Event(..) | Notice::Crossing(..) => {
             if log.wants(Category::Events) {

@@ -154,6 +154,7 @@ impl MechanismState {
             inputs_beyond,
             off_pulleys,
             lifted,
+            beyond_points,
         } = told;
         let Course {
             time,
@@ -202,7 +203,8 @@ impl MechanismState {
         if let Some(free) = free {
             visit_free(free, codec)?;
         }
-        codec.each(lifted.iter_mut().chain(off_pulleys), Codec::flag)?;
+        let flags = lifted.iter_mut().chain(off_pulleys).chain(beyond_points);
+        codec.each(flags, Codec::flag)?;
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
             codec.real(&mut rates.value)?;

@@ -7,8 +7,8 @@ use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::kinematics::system::System;
 use crate::mechanism::{
-    BodyId, Coordinate, CoordinateKind, Corner, Expression, ForceLaw, Load, MarkerId, Mechanism,
-    Number, ParameterId, Signal, Variable,
+    BeyondPoints, BodyId, Coordinate, CoordinateKind, Corner, Expression, ForceLaw, Load, MarkerId,
+    Mechanism, Number, ParameterId, Signal, Variable,
 };
 
 /// The forces of a mechanism, ready to be evaluated.
@@ -42,6 +42,8 @@ pub(super) struct AppliedForce {
     pub(super) input: Option<usize>,
     /// Whether functions have corners or jumps in its size.
     has_corners: bool,
+    /// Value and rate of its coordinate at the last pose, not numbers at a marker.
+    coordinate: [f64; 2],
 }
 
 /// Place of a force.
@@ -81,6 +83,15 @@ impl<N: Number, P: Fn(ParameterId) -> N> Circumstances<'_, N, P> {
                 Source::Given(size) => size.evaluate(self.parameter, self.time),
             },
             _ => N::unknown(),
+        }
+    }
+
+    /// Returns the value of a variable of a force with this value and rate of its coordinate.
+    fn variable_at(&self, [position, velocity]: [N; 2], which: Variable) -> N {
+        match which {
+            Variable::Position => position,
+            Variable::Velocity => velocity,
+            other => self.variable(other),
         }
     }
 }
@@ -189,6 +200,7 @@ impl AppliedForces {
             },
             input,
             has_corners: force.load.moving_expressions().any(Expression::has_corners),
+            coordinate: [f64::NAN; 2],
         });
         let seen = seen(mechanism);
         Self {
@@ -231,7 +243,8 @@ impl AppliedForces {
             seen: &self.seen,
             seen_values: &self.seen_values,
         };
-        for ((applied, definition), size) in self.list.iter().zip(&mechanism.forces).zip(sizes) {
+        let list = self.list.iter_mut().zip(&mechanism.forces);
+        for ((applied, definition), size) in list.zip(sizes) {
             let fault = |reason| {
                 Err(Error::NoForce {
                     force: definition.name.clone(),
@@ -254,6 +267,7 @@ impl AppliedForces {
                     self.gradient.clear();
                     relation.gradient(at, &mut self.gradient);
                     let coordinate = [value, self.gradient.dot(q_dot)];
+                    applied.coordinate = coordinate;
                     if applied.has_corners {
                         note_corners(&definition.load, coordinate, around, &mut self.corners);
                     }
@@ -288,20 +302,43 @@ impl AppliedForces {
         }
         Ok(energy)
     }
+
+    /// Shows `meet` the functions that sizes of forces have called beyond their points, at the pose of the
+    /// last application. Allocates nothing.
+    pub(super) fn visit_beyond<P: Fn(ParameterId) -> f64>(
+        &self,
+        mechanism: &Mechanism,
+        (parameter, time, inputs): (&P, f64, &[f64]),
+        meet: &mut dyn FnMut(BeyondPoints),
+    ) {
+        if mechanism.functions.list().is_empty() {
+            return;
+        }
+        let around = &Circumstances {
+            parameter,
+            time,
+            inputs,
+            sources: &self.sources,
+            seen: &self.seen,
+            seen_values: &self.seen_values,
+        };
+        for (applied, definition) in self.list.iter().zip(&mechanism.forces) {
+            let variable = |which| around.variable_at(applied.coordinate, which);
+            for expression in definition.load.moving_expressions() {
+                expression.visit_beyond(parameter, &variable, meet);
+            }
+        }
+    }
 }
 
 /// Adds the arguments of functions with corners or jumps in the size of a force.
 fn note_corners<P: Fn(ParameterId) -> f64>(
     load: &Load,
-    [position, velocity]: [f64; 2],
+    coordinate: [f64; 2],
     around: &Circumstances<'_, f64, P>,
     corners: &mut Vec<Corner>,
 ) {
-    let variable = |which| match which {
-        Variable::Position => position,
-        Variable::Velocity => velocity,
-        other => around.variable(other),
-    };
+    let variable = |which| around.variable_at(coordinate, which);
     for expression in load.moving_expressions() {
         let parameter = around.parameter;
         expression.visit_corners(parameter, &variable, &mut |corner| corners.push(corner));

@@ -14,9 +14,10 @@ use crate::kinematics::path::Rates;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockState, JacobianFactors};
 use crate::kinematics::singular::{Kind, NearPoint, Place, near_point};
-use crate::kinematics::state::{SINGULAR_HERE, State};
+use crate::kinematics::state::{Pose, SINGULAR_HERE, State};
 use crate::mechanism::{
-    Corner, Driver, DriverId, ForceQuantity, Indeterminate, Jet, Load, Mechanism, ParameterId,
+    BeyondPoints, Corner, Driver, DriverId, ForceQuantity, Indeterminate, Jet, Load, Mechanism,
+    ParameterId,
 };
 
 /// The forces of a mechanism with dynamics at one pose.
@@ -153,6 +154,15 @@ impl Forces {
     #[must_use]
     pub fn corners(&self) -> &[Corner] {
         &self.applied.corners
+    }
+
+    /// Shows `meet` the functions that sizes of forces have called beyond their points, at the pose for
+    /// which these were evaluated last, with the parameters and the time of it and these loads. Allocates
+    /// nothing.
+    pub fn visit_beyond(&self, pose: &Pose, loads: &[f64], meet: &mut dyn FnMut(BeyondPoints)) {
+        let parameter = |p: ParameterId| pose.parameters[p.index()];
+        let around = (&parameter, pose.time, loads);
+        self.applied.visit_beyond(&self.mechanism, around, meet);
     }
 
     /// Returns force and torque that a joint exerts at its second marker \[N and N m\].

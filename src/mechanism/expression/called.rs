@@ -44,6 +44,17 @@ pub struct Corner {
     pub jumps: bool,
 }
 
+/// An argument of a function beyond its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeyondPoints {
+    /// Place of the function.
+    pub function: usize,
+    /// The argument.
+    pub argument: f64,
+    /// The least and the largest one that has a point.
+    pub ends: [f64; 2],
+}
+
 /// The law of a function.
 #[derive(Clone, Debug)]
 pub enum FunctionBody {
@@ -109,29 +120,22 @@ impl Function {
         }
     }
 
-    /// Shows `meet` each argument, here and in functions that it calls, on whose points the value or its
-    /// slope jumps.
+    /// Shows `meet` each argument on whose points the value or its slope jumps.
     pub(super) fn visit_corners(
         &self,
-        functions: &[Self],
         parameter: &dyn Fn(ParameterId) -> f64,
         arguments: &[f64],
         meet: &mut dyn FnMut(Corner),
     ) {
-        let Some(jump) = self.first_jump.filter(|jump| *jump < 2) else {
-            return;
-        };
         let corner = |argument, nearest| Corner {
             argument,
             nearest,
-            jumps: jump == 0,
+            jumps: self.first_jump == Some(0),
         };
         match &self.body {
             FunctionBody::Points(points) => {
-                meet(corner(
-                    arguments[0],
-                    points.corners(&parameter, arguments[0]),
-                ));
+                let [x, ..] = *arguments else { return };
+                meet(corner(x, points.corners(&parameter, x)));
             }
             FunctionBody::Grid(grid) => {
                 for (axis, x) in arguments.iter().enumerate() {
@@ -139,14 +143,34 @@ impl Function {
                     meet(corner(*x, grid.corners(axis, factor, *x)));
                 }
             }
-            FunctionBody::Formula(expression) => {
-                let variable = |which| match which {
-                    Variable::Argument(place) => arguments[place],
-                    _ => f64::NAN,
-                };
-                expression.visit_corners_among(functions, parameter, &variable, meet);
-            }
+            FunctionBody::Formula(_) => {}
         }
+    }
+
+    /// Returns the first argument beyond the points, by more than rounding, with the ends of these; `None`
+    /// for a formula, and where points repeat.
+    pub(super) fn beyond(
+        &self,
+        parameter: &dyn Fn(ParameterId) -> f64,
+        arguments: &[f64],
+    ) -> Option<(f64, [f64; 2])> {
+        /// Part of the range of a table within which an argument is at its end.
+        const ROUNDING: f64 = 1e-9;
+        let ends = |axis: usize| match &self.body {
+            FunctionBody::Points(points) => points.ends(&parameter),
+            FunctionBody::Grid(grid) => {
+                let factor = grid.scale[axis].evaluate(&parameter, 0.0);
+                Some(grid.ends(axis).map(|end| end * factor))
+            }
+            FunctionBody::Formula(_) => None,
+        };
+        let arguments = arguments.iter().enumerate();
+        let mut beyond = arguments.filter_map(|(axis, x)| {
+            let [start, end] = ends(axis)?;
+            let slack = ROUNDING * (end - start);
+            (*x < start - slack || *x > end + slack).then_some((*x, [start, end]))
+        });
+        beyond.next()
     }
 }
 

@@ -215,6 +215,12 @@ impl Grid {
         };
         nearest(corners.iter().map(|abscissa| abscissa * factor), x)
     }
+
+    /// Returns the first and the last abscissa of an argument, before scaling.
+    pub(super) fn ends(&self, axis: usize) -> [f64; 2] {
+        let abscissas = &self.abscissas[axis];
+        [abscissas[0], abscissas[abscissas.len() - 1]]
+    }
 }
 
 /// A piece of an argument: a place in a segment, and how far the argument is beyond it, outside.

@@ -31,7 +31,7 @@ mod token;
 #[cfg(test)]
 mod tests;
 
-pub use called::{Corner, Function, FunctionBody, Functions, MOST_ARGUMENTS};
+pub use called::{BeyondPoints, Corner, Function, FunctionBody, Functions, MOST_ARGUMENTS};
 pub use error::ExpressionError;
 use function::Binary;
 pub(super) use function::CONSTANTS;
@@ -405,24 +405,64 @@ impl Expression {
         variable: &dyn Fn(Variable) -> f64,
         meet: &mut dyn FnMut(Corner),
     ) {
-        self.visit_corners_among(self.functions.list(), parameter, variable, meet);
+        let has_corners = |function: &Function| function.first_jump.is_some_and(|jump| jump < 2);
+        self.visit_tables(
+            self.functions.list(),
+            (parameter, variable),
+            &has_corners,
+            &mut |_, function, arguments| function.visit_corners(parameter, arguments, meet),
+        );
     }
 
-    pub(in crate::mechanism) fn visit_corners_among(
+    /// Shows `meet` each function with points that has an argument beyond them. Allocates nothing.
+    pub(crate) fn visit_beyond(
         &self,
-        functions: &[Function],
         parameter: &dyn Fn(ParameterId) -> f64,
         variable: &dyn Fn(Variable) -> f64,
-        meet: &mut dyn FnMut(Corner),
+        meet: &mut dyn FnMut(BeyondPoints),
+    ) {
+        self.visit_tables(
+            self.functions.list(),
+            (parameter, variable),
+            &|_| true,
+            &mut |place, function, arguments| {
+                if let Some((argument, ends)) = function.beyond(parameter, arguments) {
+                    meet(BeyondPoints {
+                        function: place,
+                        argument,
+                        ends,
+                    });
+                }
+            },
+        );
+    }
+
+    /// Shows `meet` the functions with points that it calls, also through others, with their places and
+    /// arguments; those alone that are wanted.
+    fn visit_tables(
+        &self,
+        functions: &[Function],
+        (parameter, variable): (&dyn Fn(ParameterId) -> f64, &dyn Fn(Variable) -> f64),
+        is_wanted: &dyn Fn(&Function) -> bool,
+        meet: &mut dyn FnMut(usize, &Function, &[f64]),
     ) {
         let values = (&parameter, &variable);
         let mut stack = [0.0; MAX_STACK];
         let mut height = 0;
         for operation in &self.program {
-            if let Operation::Call(place, count) = operation {
+            if let Operation::Call(place, count) = operation
+                && let Some(function) = functions.get(*place as usize).filter(|f| is_wanted(f))
+            {
                 let arguments = &stack[height - usize::from(*count)..height];
-                if let Some(function) = functions.get(*place as usize) {
-                    function.visit_corners(functions, parameter, arguments, meet);
+                match &function.body {
+                    FunctionBody::Formula(expression) => {
+                        let inside = |which| match which {
+                            Variable::Argument(place) => arguments[place],
+                            _ => f64::NAN,
+                        };
+                        expression.visit_tables(functions, (parameter, &inside), is_wanted, meet);
+                    }
+                    _ => meet(*place as usize, function, arguments),
                 }
             }
             operation.apply(&mut stack, &mut height, functions, &values);

@@ -305,6 +305,18 @@ impl CalledPoints {
         self.function.evaluate(&laid, x)
     }
 
+    /// Returns the first and the last abscissa for these parameters; `None` where the points repeat.
+    pub(in crate::mechanism) fn ends(
+        &self,
+        parameter: &impl Fn(ParameterId) -> f64,
+    ) -> Option<[f64; 2]> {
+        let PointFunction { table, ends, .. } = &self.function;
+        let [across, _] = table.factors(parameter);
+        let points = [table.points.first()?, table.points.last()?];
+        let abscissas = points.map(|[x, _]| x.evaluate(parameter, 0.0) * across);
+        (*ends != Ends::Periodic).then_some(abscissas)
+    }
+
     /// Returns the abscissas at which the function has a corner or jumps, for these parameters: the
     /// nearest one at or below `x` and the nearest one above; infinite where there is none.
     pub(in crate::mechanism) fn corners(

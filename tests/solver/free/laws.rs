@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use biela::kinematics::Direction;
+use biela::kinematics::{Budget, Direction};
 use biela::mechanism::{Mechanism, Source};
 
 use super::run::{Fed, Run, error};
@@ -138,6 +138,51 @@ push = { table = [[0, 3], [0.1, 1], [0.4, -3], [0.7, 8]], law = "steps", ends = 
     let off = error(&run.state(), &exact);
     assert!(off < MARK, "{off}: {:?} {exact:?}", run.state());
     assert!(run.free.energy_error().abs() < 1e-8);
+}
+
+/// From rest on a point of a table, or next to it, the motion leaves the point by the square of the time.
+#[test]
+fn a_motion_starts_from_rest_on_a_point() {
+    let functions = r#"
+[functions]
+push = { table = [[0, -4], [0.5, -4], [0.6, -4]], law = "linear" }
+"#;
+    let forces = format!("f = {{ {ALONG}, value = \"push(position)\" }}\n");
+    for start in [0.5, 0.5 + 1e-14, 0.5 + 1e-12, 0.5 + 1e-7] {
+        let mechanism = on_rail(functions, &forces, [start, 0.0]);
+        let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+        run.to(0.2);
+        let off = error(&run.state(), &[start - 0.2 * 0.2, -0.4]);
+        assert!(off < MARK, "{off}: {:?}", run.state());
+        let steps = run.statistics().accepted;
+        assert!(steps < 60, "{steps}");
+    }
+}
+
+/// A relay that brakes whatever moves has no solution once it is at rest: it pushes to and fro. The motion
+/// goes up to there, and is refused.
+#[test]
+fn a_jump_that_turns_the_motion_back_at_once_is_refused() {
+    let functions = r#"
+[functions]
+relay = { table = [[-1, 10], [0, -10], [1, -10]], law = "steps" }
+"#;
+    let forces = format!("f = {{ {ALONG}, value = \"relay(velocity)\" }}\n");
+    let mechanism = on_rail(functions, &forces, [0.3, 1.0]);
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    // The way there takes less than a hundred.
+    run.solver.set_budget(Budget::of(10_000));
+    let (free, fed) = (&mut run.free, Fed::default());
+    let refused = free.advance(&mut run.solver, &mut run.solution, &fed, 0.5);
+    let refused = refused.expect_err("it cannot rest");
+    assert!(refused.to_string().contains("sub-steps"), "{refused}");
+    // It brakes at 5 m/s² and is at rest after 0.2 s and 0.1 m.
+    let pose = run.solver.pose();
+    let (time, way) = (pose.time, pose.drivers[0]);
+    assert!(
+        (time - 0.2).abs() < 1e-6 && (way - 0.4).abs() < 1e-6,
+        "{time} {way}"
+    );
 }
 
 /// Gas pressure over the crank's angle, through a periodic spline, pushes the piston of an engine with a

@@ -55,7 +55,8 @@ impl From<Notice<'_>> for Message {
             | Notice::Approach(..)
             | Notice::Excursion(_)
             | Notice::OffPulley(_)
-            | Notice::LiftOff(_) => Self::Warning(text),
+            | Notice::LiftOff(_)
+            | Notice::Beyond(..) => Self::Warning(text),
         }
     }
 }
