@@ -12,7 +12,6 @@ tomllib = pytest.importorskip("tomllib", reason="Python 3.10 has no TOML reader"
 # The files of crates/tools/tests/file/diagnostics that are wrong in one place, or in a choice, a type or a key.
 # Only the reader knows the faults of the others: names that stand for nothing, values.
 WRONG = {
-    "bad-expression_measure",
     "bad-profile",
     "bad-profile_curve",
     "bad-table",
