@@ -1,4 +1,4 @@
-//! What is drawn fits together in the file as it does on the sheet, to rounding: drawings that a rounded
+//! Drawings that a rounded length would jam fit together in the file as on the sheet, to rounding:
 //! length bends or locks, beside their closed forms.
 
 use serde_json::{Value, json};
