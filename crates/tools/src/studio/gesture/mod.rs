@@ -311,7 +311,7 @@ impl<'a> Editing<'a> {
 
     /// Writes an angle, which may count turns \[rad\], to rounding.
     pub(super) fn turns(value: f64) -> String {
-        in_unit(written(exact_degrees(value)), "deg")
+        in_unit(written(exact_angle(value, 1.0_f64.to_radians())), "deg")
     }
 
     /// Writes a value of a coordinate \[m or rad\].
@@ -431,10 +431,10 @@ impl<'a> Editing<'a> {
     }
 }
 
-/// Returns an angle \[rad\] in degrees, short where that is the same to rounding.
-fn exact_degrees(value: f64) -> f64 {
-    let degrees = value.to_degrees();
-    neat(degrees, ROUNDING * (360.0 + degrees.abs()))
+/// Returns an angle \[rad\] in a unit, short where that is the same to rounding.
+fn exact_angle(value: f64, unit: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    neat(value / unit, ROUNDING * (turn + value.abs()) / unit)
 }
 
 /// Returns the last part of a marker's path.

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::super::drawn::within_turn;
-use super::super::drawn::{Drawn, inside, neat, outside};
+use super::super::drawn::{Drawn, inside, outside};
 use super::mass::followed;
-use super::{Editing, ROUNDING, Refusal, Through, exact_degrees};
+use super::{Editing, Refusal, Through, exact_angle};
 use crate::write::{NumberInUnit, written};
 use biela::mechanism::{BodyId, DriverSource, MarkerId, Mechanism};
 
@@ -351,12 +351,12 @@ fn in_place_of(editing: &Editing, old: &str, value: f64, is_angle: bool) -> Opti
         let old = old.trim().replace('_', "").parse::<f64>().ok()?;
         // An angle that was zero says nothing about its unit.
         return Some(match is_angle && old != 0.0 {
-            true => written(neat(value, ROUNDING)),
+            true => written(exact_angle(value, 1.0)),
             false => editing.value(value, is_angle),
         });
     };
-    let number = match is_angle && own.factor() == 1.0_f64.to_radians() {
-        true => exact_degrees(value),
+    let number = match is_angle {
+        true => exact_angle(value, own.factor()),
         false => editing.exact(value, own.factor()),
     };
     Some(own.write(&written(number)))

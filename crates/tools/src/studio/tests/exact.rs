@@ -1,5 +1,5 @@
-//! Drawings that a rounded length would jam fit together in the file as on the sheet, to rounding:
-//! length bends or locks, beside their closed forms.
+//! Drawings that a rounded length would bend or lock, beside their closed forms: what fits together on the
+//! sheet fits together in the file, to rounding.
 
 use serde_json::{Value, json};
 
@@ -209,7 +209,12 @@ fn points_are_where_they_were_clicked() {
         view = link(&mut host, &[marker(path), json!({ "at": click })]);
     }
     for (path, click) in paths.iter().zip(&clicks[1..]) {
-        assert_eq!(drawn_at(&view, path), *click, "{}", host.text());
+        assert_eq!(
+            drawn_at(&view, path).map(f64::to_bits),
+            click.map(f64::to_bits),
+            "{}",
+            host.text()
+        );
     }
     // A point at the level of another one has its coordinate, not the noise of a pose.
     let level = drawn_at(&view, "link_2.C")[1];
