@@ -85,7 +85,9 @@ fn shape<'a>(entry: &'a Value, text: &TomlText, path: &[&str]) -> &'a Value {
 
 fn kind(schema: &Value) -> FieldKind {
     let is_number = |schema: &Value| schema["$ref"] == "#/$defs/number";
-    if let Some(words) = schema["enum"].as_array() {
+    let shapes = schema["anyOf"].as_array().map_or(&[][..], Vec::as_slice);
+    let mut lists = [schema].into_iter().chain(shapes);
+    if let Some(words) = lists.find_map(|shape| shape["enum"].as_array()) {
         let words = words.iter().filter_map(Value::as_str).map(str::to_owned);
         return FieldKind::Choice(words.collect());
     }
@@ -95,7 +97,6 @@ fn kind(schema: &Value) -> FieldKind {
             false => FieldKind::Other,
         };
     }
-    let shapes = schema["anyOf"].as_array().map_or(&[][..], Vec::as_slice);
     match schema["type"].as_str() {
         _ if is_number(schema) || shapes.iter().any(is_number) => FieldKind::Number,
         Some("boolean") => FieldKind::Flag,

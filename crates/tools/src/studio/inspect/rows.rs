@@ -174,7 +174,12 @@ impl<'a> Rows<'a> {
                 let (kind, choices) = match &field.kind {
                     FieldKind::Choice(words) => {
                         let words = words.iter().map(|word| format!("\"{word}\""));
-                        ("choice", Some(words.collect::<Vec<_>>()))
+                        let mut words: Vec<String> = words.collect();
+                        // The file may have another unit than those that are proposed.
+                        if !value.is_empty() && !words.contains(&value) {
+                            words.push(value.clone());
+                        }
+                        ("choice", Some(words))
                     }
                     FieldKind::Flag => ("flag", None),
                     _ => ("text", None),
