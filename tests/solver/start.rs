@@ -207,9 +207,9 @@ const TURNING: &str = "andrews.beta andrews_free.beta bonnet_hinge.opening cam_f
 #[test]
 fn shipped_mechanisms_start_many_turns_away() {
     let mut turning = Vec::new();
-    // A lift does not come back after turns of its screw.
+    // A lift does not come back after turns of its screw, a gripper does not pass its part.
     let names = stems("mechanisms", "toml").into_iter();
-    for name in names.filter(|name| name != "scissor_lift_screw") {
+    for name in names.filter(|name| !["scissor_lift_screw", "gripper"].contains(&name.as_str())) {
         let mechanism = shipped(&name);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
             let is_input = driver.motion().is_none();

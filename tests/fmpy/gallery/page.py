@@ -74,7 +74,7 @@ def group(mechanism: dict) -> str:
     joints = mechanism.get("joints", {}).values()
     kinds = {joint["type"] for joint in joints}
     opens = any({"unilateral", "backlash"} & joint.keys() for joint in joints)
-    if opens or {"stops", "friction"} & mechanism.keys():
+    if opens or {"stops", "friction", "contacts"} & mechanism.keys():
         return CONTACT
     if "freedoms" in mechanism:
         return FREE

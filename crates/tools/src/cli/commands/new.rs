@@ -90,6 +90,7 @@ static TEMPLATES: &[Template] = &[
     template!("garage_door_track", "garage_door_track.csv"),
     template!("geared_five_bar"),
     template!("geneva_drive"),
+    template!("gripper"),
     template!("groove_cam"),
     template!("hart_inversor"),
     template!("hatch"),
