@@ -48,6 +48,7 @@ NOT_FOR_PEOPLE = re.compile(
 """Code before a string that is for programmers, or part of `--help`."""
 
 PARTS = {
+    "; `biela run --animate` writes pictures that move": "`…` has neither the extension .svg nor .png…",
     "a fixed parameter, and initialization has ended": "cannot be set: it is …",
     "a parameter derived from others": "cannot be set: it is …",
     "an event indicator": "cannot be set: it is …",

@@ -20,7 +20,7 @@ impl Recorder for Events {
     }
 
     fn finish(self: Box<Self>, motion: &Motion, events: &[Event]) -> Result<(), Error> {
-        let mut rows = "time,kind,name,speed\n".to_owned();
+        let mut rows = ["time", "kind", "name", "speed"].join(",") + "\n";
         for Event { time, force, kind } in events {
             let name = &motion.mechanism().forces[*force].name;
             let _ = write!(rows, "{time:?},{},{name},", kind.as_str());
