@@ -110,9 +110,10 @@ impl Dimension {
             powers.collect::<Vec<_>>()
         };
         let [above, below] = [true, false].map(part);
-        let above = match above.is_empty() {
-            true => "1".to_owned(),
-            false => above.join("."),
+        let above = if above.is_empty() {
+            "1".to_owned()
+        } else {
+            above.join(".")
         };
         match &below[..] {
             [] => above,

@@ -121,9 +121,10 @@ impl Equations {
             let driver = &solver.mechanism().drivers[freedom.index()];
             let signal = Signal::Motion(*freedom);
             let value = solver.signal(signal, &still, &self.point.drivers).value;
-            let scale = match own_kind(driver).is_angle() {
-                true => 1.0,
-                false => solver.size(),
+            let scale = if own_kind(driver).is_angle() {
+                1.0
+            } else {
+                solver.size()
             };
             [scale, value]
         });

@@ -273,9 +273,10 @@ impl FreeMotion {
             let now = pose.drivers[freedom.index()];
             path.driver_paths[freedom.index()] = DriverPath::held(now + change, now);
         }
-        let tracked = match watches_stops {
-            true => solver.track(&path),
-            false => solver.track_past_stops(&path, None),
+        let tracked = if watches_stops {
+            solver.track(&path)
+        } else {
+            solver.track_past_stops(&path, None)
         };
         tracked.map(|_| ())
     }

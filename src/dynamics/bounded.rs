@@ -71,9 +71,12 @@ pub(super) fn solve(
             }
         };
         // A coordinate that does not give way is driven.
-        let rounding = |k: usize| match w[(k, k)] > 0.0 {
-            true => scale(k),
-            false => scale(k).max(noise[k]),
+        let rounding = |k: usize| {
+            if w[(k, k)] > 0.0 {
+                scale(k)
+            } else {
+                scale(k).max(noise[k])
+            }
         };
         let worst = (0..count)
             .filter(|&k| violation(k) > rounding(k))
@@ -108,9 +111,10 @@ fn descend(
         let mut met = None;
         for (&k, target) in free.iter().zip(&target) {
             let way = target - x[k];
-            let (bound, place) = match way > 0.0 {
-                true => (bounds[k][1], ActiveBound::Upper),
-                false => (bounds[k][0], ActiveBound::Lower),
+            let (bound, place) = if way > 0.0 {
+                (bounds[k][1], ActiveBound::Upper)
+            } else {
+                (bounds[k][0], ActiveBound::Lower)
             };
             let room = (bound - x[k]) / way;
             if way != 0.0 && room < part {

@@ -207,9 +207,10 @@ impl Charts {
             0.0
         };
         let far = if uses_bodies { 1.0 / RETURN } else { FAR };
-        let (volume, best) = match bodies > far * joints {
-            true => (bodies, &self.all),
-            false => (joints, &self.of_joints),
+        let (volume, best) = if bodies > far * joints {
+            (bodies, &self.all)
+        } else {
+            (joints, &self.of_joints)
         };
         let returns = uses_bodies && bodies <= far * joints;
         let chosen = if !self.uses_own() && self.own.choose(&self.changes) >= RETURN * volume {

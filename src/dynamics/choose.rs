@@ -189,9 +189,10 @@ impl Equations {
             if let Some((_, (&k, &force))) = slides {
                 let at = &self.point.passive[k];
                 // At its limit friction pushes against the motion that begins.
-                let grows = match at.bounds[0] < at.bounds[1] {
-                    true => force < 0.0,
-                    false => at.coordinate.second() > 0.0,
+                let grows = if at.bounds[0] < at.bounds[1] {
+                    force < 0.0
+                } else {
+                    at.coordinate.second() > 0.0
                 };
                 self.passive.modes[k] = if grows { Mode::Growing } else { Mode::Falling };
                 decided.push(k);

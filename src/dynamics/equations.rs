@@ -207,9 +207,10 @@ impl Equations {
     ) -> Result<(), Error> {
         self.point.drivers.copy_from_slice(&solution.driver_rates);
         let seeks_forces = solution.forces().is_some();
-        let loads = match seeks_forces {
-            true => &solution.loads,
-            false => &self.accepted.loads,
+        let loads = if seeks_forces {
+            &solution.loads
+        } else {
+            &self.accepted.loads
         };
         self.point.loads.copy_from_slice(loads);
         self.solve(solver)?;

@@ -54,9 +54,10 @@ impl FreeMotion {
                 found.push((solver.pose().clone(), equilibrium));
             }
         }
-        match found.is_empty() {
-            true => Err(Error::NoEquilibrium),
-            false => Ok(found.into_iter().map(|(_, found)| found).collect()),
+        if found.is_empty() {
+            Err(Error::NoEquilibrium)
+        } else {
+            Ok(found.into_iter().map(|(_, found)| found).collect())
         }
     }
 

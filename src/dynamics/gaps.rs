@@ -133,9 +133,10 @@ impl PathWatch for GapWatch<'_> {
             let relation = &*forces.list[gap.force].relation;
             gap.here = gap.sign * sub_step.value(relation) + gap.offset;
         }
-        gaps.most = match gaps.most.is_finite() {
-            true => end + 2.0 * length,
-            false => f64::INFINITY,
+        gaps.most = if gaps.most.is_finite() {
+            end + 2.0 * length
+        } else {
+            f64::INFINITY
         };
         true
     }
@@ -146,9 +147,10 @@ impl PathWatch for GapWatch<'_> {
 fn least([before, after]: [f64; 2], sagitta: f64) -> f64 {
     let rise = after - before;
     let lowest = 0.5 - rise / (8.0 * sagitta);
-    match 0.0 < lowest && lowest < 1.0 {
-        true => before + lowest * rise - 4.0 * lowest * (1.0 - lowest) * sagitta,
-        false => before.min(after),
+    if 0.0 < lowest && lowest < 1.0 {
+        before + lowest * rise - 4.0 * lowest * (1.0 - lowest) * sagitta
+    } else {
+        before.min(after)
     }
 }
 

@@ -66,9 +66,10 @@ impl Equations {
                 touch: *touch,
                 speed: -self.opening(*touch)[0],
                 closes: closes(touch),
-                restitution: match closes(touch) {
-                    true => self.passive.list[touch.force].cause.restitution(solver),
-                    false => 0.0,
+                restitution: if closes(touch) {
+                    self.passive.list[touch.force].cause.restitution(solver)
+                } else {
+                    0.0
                 },
                 rests: false,
             });
@@ -257,9 +258,12 @@ impl Equations {
         }
         let compliance = columns.transpose() * &columns;
         let is_held = |k: usize| held.get(k).is_some_and(|held| *held);
-        let pushes = (0..touches.len()).map(|k| match is_held(k) {
-            true => [f64::NEG_INFINITY, f64::INFINITY],
-            false => [0.0, f64::INFINITY],
+        let pushes = (0..touches.len()).map(|k| {
+            if is_held(k) {
+                [f64::NEG_INFINITY, f64::INFINITY]
+            } else {
+                [0.0, f64::INFINITY]
+            }
         });
         let holds = frictions.iter().map(|&k| self.point.passive[k].bounds);
         let bounds: Vec<[f64; 2]> = pushes.chain(holds).collect();

@@ -74,9 +74,10 @@ impl FreeMotion {
         tolerance: f64,
         directions: Vec<Direction>,
     ) -> Result<Option<Self>, Error> {
-        let method = match directions.is_empty() {
-            true => Method::Automatic,
-            false => Method::Explicit,
+        let method = if directions.is_empty() {
+            Method::Automatic
+        } else {
+            Method::Explicit
         };
         let equations = Equations::new(solver, directions);
         if equations.freedoms.is_empty() {
@@ -385,9 +386,10 @@ impl FreeMotion {
         self.equations.set_drivers(solver, given, time, &self.x);
         let pose = solver.pose();
         if pose.parameters == parameters && self.equations.is_at_point(pose) {
-            return match self.equations.goes_on(solver.mechanism()) {
-                true => Ok(()),
-                false => self.renew(solver, given),
+            return if self.equations.goes_on(solver.mechanism()) {
+                Ok(())
+            } else {
+                self.renew(solver, given)
             };
         }
         if let Err(error) = self.equations.go(solver, time, Some(parameters)) {

@@ -372,9 +372,10 @@ impl Motion {
             return self.follow(path).map(drop).map_err(Stop::Blocked);
         };
         let (free, solver, solution) = (&mut free.motion, &mut self.solver, &mut self.solution);
-        let advance = match self.ends_at_events {
-            true => FreeMotion::advance_to_event,
-            false => FreeMotion::advance,
+        let advance = if self.ends_at_events {
+            FreeMotion::advance_to_event
+        } else {
+            FreeMotion::advance
         };
         let advanced = free
             .jump(solver, given, &path.to)

@@ -39,9 +39,10 @@ impl Overlap {
 
 /// Returns the unit in which messages show a coordinate, with its factor.
 fn display(kind: CoordinateKind) -> (f64, &'static str) {
-    match kind.is_angle() {
-        true => (1_f64.to_degrees(), "deg"),
-        false => (1.0, "m"),
+    if kind.is_angle() {
+        (1_f64.to_degrees(), "deg")
+    } else {
+        (1.0, "m")
     }
 }
 

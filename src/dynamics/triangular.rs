@@ -27,9 +27,10 @@ pub(super) fn factorise(w: &mut DMatrix<f64>, order: usize) {
         let square = |k: usize| w[(column, k)] * w[(column, k)];
         let pivot = w[(column, column)] - (0..column).map(square).sum::<f64>();
         let is_dependent = pivot.is_nan() || pivot <= DEPENDENT * w[(column, column)];
-        w[(column, column)] = match is_dependent {
-            true => f64::INFINITY,
-            false => pivot.sqrt(),
+        w[(column, column)] = if is_dependent {
+            f64::INFINITY
+        } else {
+            pivot.sqrt()
         };
         for row in column + 1..order {
             let products = (0..column).map(|k| w[(row, k)] * w[(column, k)]);

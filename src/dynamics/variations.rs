@@ -93,9 +93,10 @@ impl Equations {
         let mut efforts = Vec::with_capacity(directions.len() * freedoms.len());
         let inputs = |_: usize, sensitivity: &Sensitivity<'_>| {
             let mut changes = vec![0.0; loads];
-            coordinates.push(match passive.is_empty() {
-                true => Vec::new(),
-                false => passive.changes(sensitivity, None, &mut changes[of_passive..]),
+            coordinates.push(if passive.is_empty() {
+                Vec::new()
+            } else {
+                passive.changes(sensitivity, None, &mut changes[of_passive..])
             });
             changes
         };

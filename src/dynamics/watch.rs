@@ -211,9 +211,10 @@ pub fn event_indicators(mechanism: &Mechanism) -> Vec<usize> {
     let forces = mechanism.forces.iter().enumerate();
     let turns = forces.flat_map(|(index, force)| vec![index; 2 * force.load.corners()]);
     let indicators = indicators.chain(turns);
-    match mechanism.has_freedoms() {
-        true => indicators.collect(),
-        false => Vec::new(),
+    if mechanism.has_freedoms() {
+        indicators.collect()
+    } else {
+        Vec::new()
     }
 }
 

@@ -465,9 +465,10 @@ impl Fit {
                 present,
                 ..
             } => {
-                let length = match length > present {
-                    true => self.length("more than ", f64::ceil),
-                    false => self.length("less than ", f64::floor),
+                let length = if length > present {
+                    self.length("more than ", f64::ceil)
+                } else {
+                    self.length("less than ", f64::floor)
                 };
                 format!("{origin} would reach with {length}")
             }

@@ -54,9 +54,10 @@ impl StopLimit {
             return format!("beyond the {end} end of the curve of joint `{}`", self.stop);
         };
         if let Some([a, b]) = &self.shapes {
-            let depth = match value < 0.0 {
-                true => format!(" by {} mm", shown(rounded(-1e3 * value, 4))),
-                false => String::new(),
+            let depth = if value < 0.0 {
+                format!(" by {} mm", shown(rounded(-1e3 * value, 4)))
+            } else {
+                String::new()
             };
             return format!(
                 "beyond contact `{}`: `{a}` and `{b}` overlap{depth}",
@@ -64,9 +65,10 @@ impl StopLimit {
             );
         }
         let [value, limit] = kind.show_apart(value, self.value);
-        let (side, key) = match self.is_max {
-            true => ("above", "max"),
-            false => ("below", "min"),
+        let (side, key) = if self.is_max {
+            ("above", "max")
+        } else {
+            ("below", "min")
         };
         format!(
             "beyond stop `{}`: {} = {value} is {side} its `{key}` = {limit}",

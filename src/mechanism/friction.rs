@@ -57,11 +57,9 @@ impl Bearing {
         [fx, fy, torque]: [N; 3],
     ) -> N {
         let zero = N::constant(0.0);
-        let force = match fx.is_zero() && fy.is_zero() {
-            // A norm has no derivative there.
-            true => zero,
-            false => fx.hypot(fy),
-        };
+        // A norm has no derivative at zero.
+        let is_zero = fx.is_zero() && fy.is_zero();
+        let force = if is_zero { zero } else { fx.hypot(fy) };
         match &self.shape {
             BearingShape::Pin { radius } => force * radius.evaluate(parameter, zero),
             BearingShape::Guide { length: None } => force,

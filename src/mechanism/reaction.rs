@@ -186,9 +186,10 @@ impl List {
         let name = &joint.name;
         let description =
             format!("effort of coupling `{name}`, conjugate to left - right of its equation");
-        let kind = match equation.is_angle {
-            true => CoordinateKind::Angle,
-            false => CoordinateKind::Distance,
+        let kind = if equation.is_angle {
+            CoordinateKind::Angle
+        } else {
+            CoordinateKind::Distance
         };
         let quantity = ForceQuantity::Reaction(index, 2);
         self.add(name, "effort", description, quantity, kind.effort_unit());

@@ -53,9 +53,10 @@ pub fn in_our_words(name: &str, known: &[&str]) -> Option<String> {
         .iter()
         .filter_map(|name| Some(name.rsplit_once('.')?.0));
     let owners: Vec<&str> = owners.collect();
-    let owner = match owners.contains(&owner) {
-        true => owner,
-        false => nearest(owner, &owners)?,
+    let owner = if owners.contains(&owner) {
+        owner
+    } else {
+        nearest(owner, &owners)?
     };
     let meant: Vec<String> = parts.iter().map(|part| format!("{owner}.{part}")).collect();
     let meant = meant.iter().map(String::as_str);

@@ -53,9 +53,10 @@ pub fn fixed(number: f64, decimals: usize) -> String {
 /// Returns a number with at most this many decimals, without zeros at its end.
 pub fn shortest(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
     };
     match text {
         "-0" => "0".to_owned(),

@@ -160,9 +160,10 @@ impl Product {
     }
 
     fn to_power(self, power: i32) -> Option<Self> {
-        let [above, below] = match power < 0 {
-            true => [self.below, self.above],
-            false => [self.above, self.below],
+        let [above, below] = if power < 0 {
+            [self.below, self.above]
+        } else {
+            [self.above, self.below]
         };
         let size = power.abs();
         Some(Self {
@@ -307,9 +308,10 @@ fn read(text: &str) -> Result<Product, UnitFault> {
     let unit = reader.product()?;
     let sizes = [unit.above / unit.below, unit.below / unit.above];
     let is_possible = sizes.iter().all(|size| size.is_finite() && *size > 0.0);
-    match reader.at == text.len() && is_possible {
-        true => Ok(unit),
-        false => Err(UnitFault::Form),
+    if reader.at == text.len() && is_possible {
+        Ok(unit)
+    } else {
+        Err(UnitFault::Form)
     }
 }
 

@@ -275,9 +275,10 @@ impl Runner {
     /// There is no freedom, or no equilibrium is found.
     pub(crate) fn balance(&mut self, all: bool) -> Result<Vec<Equilibrium>, Failure> {
         let (motion, part) = self.at_start();
-        let found = match all {
-            true => motion.balances(&part),
-            false => motion.balance(&part).map(|equilibrium| vec![equilibrium]),
+        let found = if all {
+            motion.balances(&part)
+        } else {
+            motion.balance(&part).map(|equilibrium| vec![equilibrium])
         };
         found.map_err(stopped)
     }

@@ -205,9 +205,10 @@ impl Scenario {
                 }
             };
         }
-        let start = match driven.has_freedoms() {
-            true => own.simulation.start,
-            false => times[0],
+        let start = if driven.has_freedoms() {
+            own.simulation.start
+        } else {
+            times[0]
         };
         let scenario = Self {
             own: Arc::clone(own),

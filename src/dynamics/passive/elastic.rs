@@ -51,10 +51,12 @@ impl Cause for ElasticStop {
             return Mode::Free;
         };
         let is_inside = below <= 0.0 && above <= 0.0;
-        match is_inside || touched.sign() * push(self, solver, touched, at) > 0.0 {
-            true => touched,
-            false if touched == Mode::AtMin => Mode::LooseAtMin,
-            false => Mode::LooseAtMax,
+        if is_inside || touched.sign() * push(self, solver, touched, at) > 0.0 {
+            touched
+        } else if touched == Mode::AtMin {
+            Mode::LooseAtMin
+        } else {
+            Mode::LooseAtMax
         }
     }
 

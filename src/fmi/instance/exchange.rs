@@ -55,9 +55,10 @@ impl<M: Model> Instance<M> {
             self.commit(Call::NewDiscreteStates)?;
         }
         let must_end = self.course.terminated;
-        let changed = match is_hosted && !must_end {
-            true => self.model.change_states(&self.logger),
-            false => Ok(StateChange::None),
+        let changed = if is_hosted && !must_end {
+            self.model.change_states(&self.logger)
+        } else {
+            Ok(StateChange::None)
         };
         let states = changed.map_err(|failure| self.failed(Call::NewDiscreteStates, failure))?;
         Ok(EventResult { must_end, states })

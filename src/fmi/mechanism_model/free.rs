@@ -124,9 +124,10 @@ impl MechanismModel {
         self.note_states();
         self.report_happenings(log);
         moved.map_err(Failure::Discarded)?;
-        match reached < end {
-            true => Err(Failure::Event),
-            false => Ok(()),
+        if reached < end {
+            Err(Failure::Event)
+        } else {
+            Ok(())
         }
     }
 
@@ -178,9 +179,10 @@ impl MechanismModel {
             motion.resume_free(state).map_err(failed)?;
         }
         if let Some((free, solver, _)) = motion.parts() {
-            let settled = match starts {
-                true => free.restart(solver, &given, velocity),
-                false => free.go_on_with(solver, &given, velocity),
+            let settled = if starts {
+                free.restart(solver, &given, velocity)
+            } else {
+                free.go_on_with(solver, &given, velocity)
             };
             settled.map_err(failed)?;
         }

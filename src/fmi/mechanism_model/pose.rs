@@ -457,11 +457,15 @@ impl MechanismModel {
         };
         self.set_path(start, h);
         let (path, is_free) = (&self.path, self.motion.free().is_some());
-        let followed = self.motion.follow_by(|solver| match trial {
+        let followed = self.motion.follow_by(|solver| {
             // Stops act on freedoms by their forces.
-            true => solver.track_through_stops(path),
-            false if is_free => solver.track_past_stops(path, None),
-            false => solver.track(path),
+            if trial {
+                solver.track_through_stops(path)
+            } else if is_free {
+                solver.track_past_stops(path, None)
+            } else {
+                solver.track(path)
+            }
         });
         self.set_driver_rates(start, h, 1.0);
         match followed {

@@ -40,15 +40,16 @@ impl fmt::Display for DrawnApart {
             ..
         } = self;
         let distance = millimetres(self.distance);
-        match self.is_line {
-            true => write!(
+        if self.is_line {
+            write!(
                 f,
                 "`{to}` was drawn {distance} off the line of `{from}`: a slip in a coordinate?"
-            ),
-            false => write!(
+            )
+        } else {
+            write!(
                 f,
                 "`{from}` and `{to}` were drawn {distance} apart: a slip in a coordinate?"
-            ),
+            )
         }
     }
 }

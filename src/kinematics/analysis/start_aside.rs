@@ -56,9 +56,10 @@ fn find_start(mechanism: &Arc<Mechanism>) -> Option<String> {
             if is_within_limits(driver, value)
                 && Solver::assembled(Arc::clone(mechanism), &path).is_ok()
             {
-                let value = match is_angle {
-                    true => format!("{} deg", shown(value.to_degrees())),
-                    false => format!("{} m", shown(value)),
+                let value = if is_angle {
+                    format!("{} deg", shown(value.to_degrees()))
+                } else {
+                    format!("{} m", shown(value))
                 };
                 return Some(format!("{} `{}` at {value}", driver.noun(), driver.name));
             }

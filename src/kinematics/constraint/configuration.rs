@@ -195,9 +195,10 @@ impl<N: Number> ShapeCore<N> {
             let is_watched = mechanism.has_clearance_of(id);
             Self {
                 body: shape.body,
-                core: match is_watched {
-                    true => Core::for_shape(shape),
-                    false => Core::default(),
+                core: if is_watched {
+                    Core::for_shape(shape)
+                } else {
+                    Core::default()
                 },
                 reach: 0.0,
                 is_watched,

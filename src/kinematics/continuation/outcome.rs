@@ -140,9 +140,10 @@ impl Blocked {
                 format!("`{}` at {value}", driver.name)
             })
             .collect();
-        let moving = match moving.is_empty() {
-            true => String::new(),
-            false => format!(", with {}", moving.join(", ")),
+        let moving = if moving.is_empty() {
+            String::new()
+        } else {
+            format!(", with {}", moving.join(", "))
         };
         let time = time.map_or_else(String::new, |time| format!(" at t = {} s", fixed(time, 9)));
         format!("{reason}{time}: the mechanism cannot go on{moving}")

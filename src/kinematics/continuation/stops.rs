@@ -308,10 +308,8 @@ impl StopWatch {
 
     /// Returns the gaps of a limit at the pose and at the end of the sub-step.
     fn gaps(&self, Limit { stop, is_max }: Limit) -> [f64; 2] {
-        let gap = |value: f64, [least, most]: [f64; 2]| match is_max {
-            true => most - value,
-            false => value - least,
-        };
+        let gap =
+            |value: f64, [least, most]: [f64; 2]| if is_max { most - value } else { value - least };
         [
             gap(self.here[stop], self.limits_here[stop]),
             gap(self.ahead[stop], self.limits_ahead[stop]),

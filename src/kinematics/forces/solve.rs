@@ -582,9 +582,10 @@ impl Work {
 /// for a prescribed motion.
 fn coasting_and_free(driver: &Driver, rates: &Jet) -> (Jet, f64) {
     let [first, second] = rates.derivatives;
-    let [coasting, free] = match driver.has_open_acceleration() {
-        true => [0.0, second],
-        false => [second, 0.0],
+    let [coasting, free] = if driver.has_open_acceleration() {
+        [0.0, second]
+    } else {
+        [second, 0.0]
     };
     (Jet::new(0.0, [first, coasting]), free)
 }

@@ -45,9 +45,12 @@ pub enum ForceNeed {
 impl ForceNeed {
     /// Returns the need of these forces.
     fn of(forces: impl Iterator<Item = ForceQuantity>) -> Self {
-        let need = forces.map(|force| match force.needs_reactions() {
-            true => Self::Reactions,
-            false => Self::Efforts,
+        let need = forces.map(|force| {
+            if force.needs_reactions() {
+                Self::Reactions
+            } else {
+                Self::Efforts
+            }
         });
         need.max().unwrap_or(Self::None)
     }

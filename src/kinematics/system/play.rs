@@ -59,9 +59,10 @@ impl OpenRelation {
             let half = 0.5 * backlash.value(parameters);
             return [held - half, held + half];
         }
-        match opens_towards(joint, at) > 0.0 {
-            true => [held, f64::INFINITY],
-            false => [f64::NEG_INFINITY, held],
+        if opens_towards(joint, at) > 0.0 {
+            [held, f64::INFINITY]
+        } else {
+            [f64::NEG_INFINITY, held]
         }
     }
 }

@@ -98,9 +98,10 @@ impl Grid {
                 .pieces(axis, x[axis])
                 .map(|piece| (value(piece), piece.is_outside));
             let joined = found.reduce(|(found, was_outside), (value, is_outside)| {
-                let jump = match was_outside == is_outside {
-                    true => jump,
-                    false => self.first_jump().unwrap_or(jump).min(jump),
+                let jump = if was_outside == is_outside {
+                    jump
+                } else {
+                    self.first_jump().unwrap_or(jump).min(jump)
                 };
                 (found.joined(value, jump), is_outside)
             });
@@ -130,9 +131,10 @@ impl Grid {
         };
         let below = (range.low < start).then(|| outside(0, start, x));
         let above = (range.high > end).then(|| outside(last - 1, end, x));
-        let segments = match x.is_single() {
-            true => segment(range.low)..segment(range.low) + 1,
-            false => segment(range.low).saturating_sub(1)..segment(range.high) + 1,
+        let segments = if x.is_single() {
+            segment(range.low)..segment(range.low) + 1
+        } else {
+            segment(range.low).saturating_sub(1)..segment(range.high) + 1
         };
         let inside = segments.filter_map(move |segment| {
             let part = Interval::new(abscissas[segment], abscissas[segment + 1]);

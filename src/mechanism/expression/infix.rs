@@ -16,9 +16,12 @@ impl Expression {
         time: &str,
         function: &impl Fn(&str) -> Option<&'static str>,
     ) -> Option<String> {
-        let number = |value: f64| match value < 0.0 {
-            true => format!("({value})"),
-            false => format!("{value}"),
+        let number = |value: f64| {
+            if value < 0.0 {
+                format!("({value})")
+            } else {
+                format!("{value}")
+            }
         };
         let mut stack: Vec<String> = Vec::new();
         for &operation in &self.program {

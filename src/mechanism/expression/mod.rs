@@ -270,9 +270,10 @@ impl Expression {
             height: heights.max().unwrap_or(0),
             program: program.into(),
             parameters: parameters.into(),
-            functions: match calls {
-                true => functions.clone(),
-                false => Functions::default(),
+            functions: if calls {
+                functions.clone()
+            } else {
+                Functions::default()
             },
         }
     }

@@ -236,9 +236,10 @@ impl CalledPoints {
             let mut spline = Spline::new(table.points.len(), function.ends);
             let (x, y) = spline.points_mut();
             let none = |_| f64::NAN;
-            match is_scaled_later {
-                true => table.write_unscaled(&none, x, y),
-                false => table.write(&none, x, y),
+            if is_scaled_later {
+                table.write_unscaled(&none, x, y)
+            } else {
+                table.write(&none, x, y)
             }
             spline.fit();
             spline
@@ -355,8 +356,11 @@ impl CalledPoints {
 /// Returns the largest number up to `x` and the smallest above it.
 pub(super) fn nearest(numbers: impl Iterator<Item = f64>, x: f64) -> [f64; 2] {
     let around = [f64::NEG_INFINITY, f64::INFINITY];
-    numbers.fold(around, |[below, above], number| match number <= x {
-        true => [below.max(number), above],
-        false => [below, above.min(number)],
+    numbers.fold(around, |[below, above], number| {
+        if number <= x {
+            [below.max(number), above]
+        } else {
+            [below, above.min(number)]
+        }
     })
 }

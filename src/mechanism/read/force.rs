@@ -220,14 +220,12 @@ impl<'a> Context<'a> {
         // Each is read, so that each wrong one is reported.
         let force = keys.value.value.map(|components| components.map(&mut read));
         let force = force.map(|[x, y]| Some([x?, y?]));
-        let torque = match torque {
-            true => Some(keys.torque.value.and_then(read)?),
-            false => None,
+        let torque = if torque {
+            Some(keys.torque.value.and_then(read)?)
+        } else {
+            None
         };
-        let force = match value {
-            true => Some(force??),
-            false => None,
-        };
+        let force = if value { Some(force??) } else { None };
         let marker = keys.marker.value?;
         if self.carriers[marker.index()].is_none() {
             let message = format!("{} acts on ground, which does not move", keys.owner.subject);

@@ -452,15 +452,16 @@ impl<'a> Context<'a> {
             function.has_pieces |= has_pieces || function.first_jump.is_some_and(|jump| jump < 2);
             if operations > MOST_OPERATIONS || in_a_row > MOST_IN_A_ROW {
                 let name = quoted(&function.name);
-                let message = match in_a_row > MOST_IN_A_ROW {
-                    true => format!(
+                let message = if in_a_row > MOST_IN_A_ROW {
+                    format!(
                         "the function {name} calls others, which call others, {in_a_row} in a row; \
                          {MOST_IN_A_ROW} at most are possible"
-                    ),
-                    false => format!(
+                    )
+                } else {
+                    format!(
                         "a call of the function {name} takes {operations} operations, \
                          {MOST_OPERATIONS} at most are possible"
-                    ),
+                    )
                 };
                 self.error(code::BAD_EXPRESSION, span.clone(), message)
                     .suggest("write a table of its values: `table = [[0, 0], [1, 2]]`");

@@ -137,9 +137,12 @@ impl<'a> Context<'a> {
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let mut drivers = self.each(&root.drivers, driver);
         drivers.extend(self.each(&root.freedoms, Self::freedom));
-        let measure = |context: &mut Self, entry| match is_derived(&entry) {
-            true => None,
-            false => context.measure(entry),
+        let measure = |context: &mut Self, entry| {
+            if is_derived(&entry) {
+                None
+            } else {
+                context.measure(entry)
+            }
         };
         let measures = self.each(&root.measures, measure);
         let sections = [&root.drivers, &root.freedoms, &root.measures];

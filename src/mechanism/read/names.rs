@@ -60,9 +60,10 @@ impl<'a> Context<'a> {
         let entries = sections.into_iter().flat_map(Field::items);
         for entry in entries {
             let name = entry.name();
-            match is_derived(entry) {
-                true => self.computed.push(name),
-                false => self.coordinates.push((name, known.get(name).copied())),
+            if is_derived(entry) {
+                self.computed.push(name)
+            } else {
+                self.coordinates.push((name, known.get(name).copied()))
             }
         }
     }

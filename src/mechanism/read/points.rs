@@ -335,12 +335,11 @@ impl<'a> Context<'a> {
                 "{}the last point, at {end} deg, is not within the turn that starts at {start} deg",
                 table.line(last)
             );
-            let help = match table.has_scale {
-                true => {
-                    "angles go once round: the last point is joined to the first, and only that \
+            let help = if table.has_scale {
+                "angles go once round: the last point is joined to the first, and only that \
                      one may be repeated"
-                }
-                false => "angles go once round, in radians: degrees have `scale = [\"deg\", 1]`",
+            } else {
+                "angles go once round, in radians: degrees have `scale = [\"deg\", 1]`"
             };
             self.error(code::BAD_TABLE, table.span(last), message)
                 .suggest(help);

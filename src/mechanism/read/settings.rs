@@ -127,10 +127,10 @@ impl<'a> Context<'a> {
             start,
             stop,
             step,
-            tolerance: keys.tolerance.number().unwrap_or(match has_freedoms {
-                true => 1e-8,
-                false => 1e-6,
-            }),
+            tolerance: keys
+                .tolerance
+                .number()
+                .unwrap_or(if has_freedoms { 1e-8 } else { 1e-6 }),
             gravity: gravity.unwrap_or_else(|| GRAVITY.map(Expression::constant)),
             rates: keys.rates.value.unwrap_or_default(),
             extrapolation: keys.extrapolation.value.unwrap_or_default(),

@@ -190,13 +190,10 @@ impl<'a> Context<'a> {
             return Some(());
         }
         let (subject, word) = (&item.fields.subject, item.key.get_ref());
-        let message = match count < least {
-            true => format!("too few markers in `{word}` of {subject}: {count}, at least {least}"),
-            false => {
-                format!(
-                    "too many markers in `{word}` of {subject}: {count}, at most {MOST_CORNERS}"
-                )
-            }
+        let message = if count < least {
+            format!("too few markers in `{word}` of {subject}: {count}, at least {least}")
+        } else {
+            format!("too many markers in `{word}` of {subject}: {count}, at most {MOST_CORNERS}")
         };
         self.error(code::SHAPE, item.span(), message);
         None

@@ -185,9 +185,10 @@ impl<'a> Kind<'a> for SiUnit {
             (Some(number), Some(constant)) => format!("value = \"{number}*{constant}\", "),
             _ => String::new(),
         };
-        let help = match self.has_display {
-            true => format!("values are SI: `{value}unit = \"{si}\", display = \"{name}\"`"),
-            false => in_si(unit),
+        let help = if self.has_display {
+            format!("values are SI: `{value}unit = \"{si}\", display = \"{name}\"`")
+        } else {
+            in_si(unit)
         };
         let message = format!("`{name}` is not an SI unit");
         context

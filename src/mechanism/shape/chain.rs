@@ -296,9 +296,10 @@ impl Shape {
                 let backwards = |k: usize| point(count - 1 - k);
                 let back_bulge = |k: usize| bulge((2 * count - 2 - k) % count).map(|bulge| -bulge);
                 let is_backwards = doubled_area(count, &point, &bulge) < 0.0;
-                let (corner, bulge): (Corners<'_, N>, Bulges<'_, N>) = match is_backwards {
-                    true => (&backwards, &back_bulge),
-                    false => (&point, &bulge),
+                let (corner, bulge): (Corners<'_, N>, Bulges<'_, N>) = if is_backwards {
+                    (&backwards, &back_bulge)
+                } else {
+                    (&point, &bulge)
                 };
                 Some(look(&Chain {
                     corner,
@@ -405,9 +406,10 @@ fn turn<N: Number>(normals: [[N; 2]; 2]) -> Turn {
     let [from, to] = normals.map(|normal| normal.map(Number::real));
     let (sin, cos) = (cross(from, to), dot(from, to));
     if sin.abs() > SMOOTH {
-        match sin > 0.0 {
-            true => Turn::Convex,
-            false => Turn::Hollow,
+        if sin > 0.0 {
+            Turn::Convex
+        } else {
+            Turn::Hollow
         }
     } else if cos < 0.0 {
         Turn::Back

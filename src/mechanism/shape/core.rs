@@ -177,9 +177,10 @@ fn features_of<N: Number>(
             None => edge(ends),
             Some((center, radius, turn)) => {
                 let is_wide = turn.real().abs() > half;
-                let (kind, ends) = match turn.real() > 0.0 {
-                    true => (FeatureKind::Convex { is_wide }, ends),
-                    false => (FeatureKind::Hollow { is_wide }, [ends[1], ends[0]]),
+                let (kind, ends) = if turn.real() > 0.0 {
+                    (FeatureKind::Convex { is_wide }, ends)
+                } else {
+                    (FeatureKind::Hollow { is_wide }, [ends[1], ends[0]])
                 };
                 Feature {
                     kind,

@@ -39,9 +39,10 @@ fn friction_adds_to_the_effort_against_the_motion() {
     for velocity in [-0.3, -0.05, 0.0, 1e-9, 0.05, 0.3] {
         solution.driver_rates[0].derivatives = [velocity, 0.7];
         solution.solve(&mut solver).expect("it is regular");
-        let wanted = match velocity == 0.0 {
-            true => 1.4,
-            false => 1.4 + velocity.signum() * friction(velocity.abs()),
+        let wanted = if velocity == 0.0 {
+            1.4
+        } else {
+            1.4 + velocity.signum() * friction(velocity.abs())
         };
         assert!(
             (solution.force(EFFORT) - wanted).abs() < 1e-14,

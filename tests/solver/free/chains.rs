@@ -40,13 +40,14 @@ pub(super) fn chain(random: &mut Random) -> String {
     let mut add_contacts = |random: &mut Random, name: &str, reach: f64| {
         if random.number() < 0.7 {
             let (low, high) = (random.between(-reach, -0.2), random.between(0.2, reach));
-            let kind = match random.number() < 0.6 {
-                true => format!("restitution = {:.2}", random.between(0.0, 0.9)),
-                false => format!(
+            let kind = if random.number() < 0.6 {
+                format!("restitution = {:.2}", random.between(0.0, 0.9))
+            } else {
+                format!(
                     "stiffness = {:.1}, damping = {:.2}",
                     random.between(50.0, 2000.0),
                     random.between(0.0, 5.0)
-                ),
+                )
             };
             writeln!(
                 stops,

@@ -465,9 +465,10 @@ impl Case {
         let mut text = format!("format = 1\nname = \"any\"\n{}[freedoms]\n", self.parts);
         for (k, (coordinate, [start, velocity])) in self.sets[set].iter().zip(states).enumerate() {
             // The estimates say where the good ones start.
-            let start = match start.is_nan() {
-                true => String::new(),
-                false => format!(", start = {start:?}"),
+            let start = if start.is_nan() {
+                String::new()
+            } else {
+                format!(", start = {start:?}")
             };
             writeln!(
                 text,

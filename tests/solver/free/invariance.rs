@@ -256,9 +256,12 @@ fn massless_bodies_pass_the_motion_on() {
                 && !line.starts_with("motor =")
                 && !line.starts_with("pivot =")
         })
-        .map(|line| match line.contains("velocity = 12") {
-            true => line.replace("velocity = 12", "velocity = 3"),
-            false => line.to_owned(),
+        .map(|line| {
+            if line.contains("velocity = 12") {
+                line.replace("velocity = 12", "velocity = 3")
+            } else {
+                line.to_owned()
+            }
         })
         .collect();
     let truth = Minimal {

@@ -143,9 +143,10 @@ lift = {{ coordinate = "x", markers = ["ground.G", "follower.R"], start = 0.045,
     let (mut low, mut high) = (leaves + 0.02, leaves + 0.1);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        match flight(middle) > place(middle) {
-            true => low = middle,
-            false => high = middle,
+        if flight(middle) > place(middle) {
+            low = middle
+        } else {
+            high = middle
         }
     }
     let speed = rate(low) - (rate(leaves) - G * (low - leaves));

@@ -346,10 +346,10 @@ fn difference(a: &End, b: &End, [same, same_stop]: [f64; 2]) -> Option<String> {
         return None;
     }
     // A motion that stops at a dead point has come to the root of the rounding of its place.
-    let same = match a.reached < 1.0 {
-        true if same_stop > SAME_STOP => 0.5,
-        true => 0.02,
-        false => same,
+    let same = match (a.reached < 1.0, same_stop > SAME_STOP) {
+        (true, true) => 0.5,
+        (true, false) => 0.02,
+        (false, _) => same,
     };
     (most.is_nan() || most > same).then(|| format!("another pose, {most:.1e} away"))
 }

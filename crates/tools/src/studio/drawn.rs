@@ -129,9 +129,10 @@ impl Drawn {
 
     /// Returns the value of a coordinate \[m or rad\] without the noise of the pose.
     pub(super) fn settled_value(&self, value: f64, is_angle: bool) -> f64 {
-        match is_angle {
-            true => neat(value.to_degrees(), POSE.to_degrees()).to_radians(),
-            false => self.settled(value),
+        if is_angle {
+            neat(value.to_degrees(), POSE.to_degrees()).to_radians()
+        } else {
+            self.settled(value)
         }
     }
 
@@ -165,9 +166,10 @@ impl Drawn {
     /// Returns the value of a coordinate where the markers are at these places.
     pub(super) fn value_at(coordinate: Coordinate, place: impl Fn(MarkerId) -> [f64; 3]) -> f64 {
         let value = coordinate.between(place);
-        match coordinate.kind.is_angle() {
-            true => within_turn(value),
-            false => value,
+        if coordinate.kind.is_angle() {
+            within_turn(value)
+        } else {
+            value
         }
     }
 

@@ -43,9 +43,10 @@ impl<'a> Braces<'a> {
         };
         let Some(last) = self.entries(text).pop() else {
             let inside = place.start + 1..place.end - 1;
-            return match text[inside.clone()].contains('#') {
-                true => vec![(inside.end..inside.end, format!("{entry} "))],
-                false => vec![(inside, format!(" {entry} "))],
+            return if text[inside.clone()].contains('#') {
+                vec![(inside.end..inside.end, format!("{entry} "))]
+            } else {
+                vec![(inside, format!(" {entry} "))]
             };
         };
         let comma = comma_after(text, last.end);
@@ -56,11 +57,12 @@ impl<'a> Braces<'a> {
             let behind = comma.map_or(last.end, |comma| comma + 1);
             let end = text[behind..].find(['\n', '}']).map_or(text.len(), |at| {
                 // A brace in a comment ends nothing.
-                match text[behind..behind + at].contains('#') {
-                    true => text[behind..]
+                if text[behind..behind + at].contains('#') {
+                    text[behind..]
                         .find('\n')
-                        .map_or(text.len(), |at| behind + at),
-                    false => behind + at,
+                        .map_or(text.len(), |at| behind + at)
+                } else {
+                    behind + at
                 }
             });
             let end = text[..end].trim_end_matches(['\r', ' ']).len().max(behind);
@@ -90,15 +92,14 @@ impl<'a> Braces<'a> {
             let blanks = text[end..].len() - text[end..].trim_start_matches(' ').len();
             return Some(entry.start..end + blanks);
         };
-        match text[before.end..entry.start].contains('#') {
-            // A comment behind the entry before stays, and with it its comma.
-            true => {
-                let start = text[..entry.start].trim_end_matches([' ', '\t']);
-                let rest = text[end..].trim_start_matches([' ', '\t', '\r']);
-                let line = start.strip_suffix('\n').filter(|_| rest.starts_with('\n'));
-                Some(line.unwrap_or(start).len()..end)
-            }
-            false => Some(before.end..end),
+        // A comment behind the entry before stays, and with it its comma.
+        if text[before.end..entry.start].contains('#') {
+            let start = text[..entry.start].trim_end_matches([' ', '\t']);
+            let rest = text[end..].trim_start_matches([' ', '\t', '\r']);
+            let line = start.strip_suffix('\n').filter(|_| rest.starts_with('\n'));
+            Some(line.unwrap_or(start).len()..end)
+        } else {
+            Some(before.end..end)
         }
     }
 

@@ -101,9 +101,10 @@ pub fn estimate<'a>(
 ) -> String {
     let part = |value: f64, scale: f64| {
         let smallest = scale * 10_f64.powi(1 - ESTIMATE_DIGITS as i32);
-        match value.abs() <= smallest {
-            true => "0".to_owned(),
-            false => written(rounded(value, ESTIMATE_DIGITS)),
+        if value.abs() <= smallest {
+            "0".to_owned()
+        } else {
+            written(rounded(value, ESTIMATE_DIGITS))
         }
     };
     let own = |index| old(index).and_then(NumberInUnit::of);

@@ -41,9 +41,10 @@ pub(super) fn couple(
     let relation = Coupling {
         coordinates,
         function,
-        dimension: match equation.is_angle {
-            true => Dimension::Angle,
-            false => Dimension::Length,
+        dimension: if equation.is_angle {
+            Dimension::Angle
+        } else {
+            Dimension::Length
         },
     };
     (Box::new(relation), held_at(&equation.phase))

@@ -213,9 +213,10 @@ impl Parser<'_> {
                 return None;
             };
             let near = names::help(name, self.scope.arguments, &[])?;
-            Some(match near.starts_with("did") {
-                true => near,
-                false => format!("name it as an argument: `of = [\"{first}\", \"{name}\"]`"),
+            Some(if near.starts_with("did") {
+                near
+            } else {
+                format!("name it as an argument: `of = [\"{first}\", \"{name}\"]`")
             })
         };
         let help = help

@@ -141,10 +141,13 @@ impl Alignment {
                 [0, more] => at[1] += more,
                 [more, 0] => at[0] += more,
                 // The earlier one.
-                [one, other] => match here[0][0].time <= here[1][0].time {
-                    true => at[0] += one,
-                    false => at[1] += other,
-                },
+                [one, other] => {
+                    if here[0][0].time <= here[1][0].time {
+                        at[0] += one
+                    } else {
+                        at[1] += other
+                    }
+                }
             }
         }
     }
@@ -198,9 +201,10 @@ fn undone(events: &[&Happening], short: f64) -> usize {
             | [EventKind::Slides, EventKind::Sticks]
             | [EventKind::Sticks, EventKind::Slides]
     );
-    match is_opposite && second.time - first.time < short {
-        true => 2 + between,
-        false => 0,
+    if is_opposite && second.time - first.time < short {
+        2 + between
+    } else {
+        0
     }
 }
 

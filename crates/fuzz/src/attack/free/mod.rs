@@ -200,8 +200,9 @@ fn check_refusal(case: &Case, refusal: Option<&Refusal>) -> Result<(), String> {
         return Ok(());
     };
     let mut known = case.refusals.iter();
-    match known.any(|words| name.contains(words)) {
-        true => Ok(()),
-        false => Err(format!("refused at {time} s: {name}")),
+    if known.any(|words| name.contains(words)) {
+        Ok(())
+    } else {
+        Err(format!("refused at {time} s: {name}"))
     }
 }

@@ -115,9 +115,10 @@ fn first_zero(function: impl Fn(f64) -> f64, start: f64, until: f64, step: f64) 
             }
             for _ in 0..80 {
                 let middle = 0.5 * (low + high);
-                match function(middle) > 0.0 {
-                    true => low = middle,
-                    false => high = middle,
+                if function(middle) > 0.0 {
+                    low = middle
+                } else {
+                    high = middle
                 }
             }
             return Some(high);
@@ -297,9 +298,10 @@ impl MassRow {
         loop {
             let times = self.contacts.iter().map(|contact| {
                 let [gap, rate] = self.gap(contact);
-                match rate < 0.0 {
-                    true => gap.max(0.0) / -rate,
-                    false => f64::INFINITY,
+                if rate < 0.0 {
+                    gap.max(0.0) / -rate
+                } else {
+                    f64::INFINITY
                 }
             });
             let mut order: Vec<(usize, f64)> = times.enumerate().collect();

@@ -127,9 +127,10 @@ pub fn any_group(chance: &mut Chance, mut text: Text<'_>) -> Case {
         };
         let j = if i == j { bodies + 1 } else { j };
         let kind = chance.below(5);
-        let (place, turn) = match j == bodies {
-            true => (pin, crank),
-            false => (anywhere(chance), angle(chance)),
+        let (place, turn) = if j == bodies {
+            (pin, crank)
+        } else {
+            (anywhere(chance), angle(chance))
         };
         let (here, there) = (format!("m{number}"), format!("n{number}"));
         marks[i].push((here.clone(), place, turn));

@@ -241,9 +241,10 @@ fn describe_free_motion(at: &mut AtRest) -> Result<String, Error> {
             of_acceleration.suffix()
         );
     }
-    let states = match at.keeps_coordinates() {
-        true => "the freedoms",
-        false => "coordinates that are exchanged near dead points",
+    let states = if at.keeps_coordinates() {
+        "the freedoms"
+    } else {
+        "coordinates that are exchanged near dead points"
     };
     let _ = writeln!(out, "  states in model exchange: {states}");
     if at.is_balanced() {

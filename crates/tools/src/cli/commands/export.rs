@@ -109,9 +109,10 @@ impl Export {
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
         warn_of_old(&libraries);
-        let page = match self.no_page {
-            true => None,
-            false => page_solver::find(page_solver::Solver::Page)?,
+        let page = if self.no_page {
+            None
+        } else {
+            page_solver::find(page_solver::Solver::Page)?
         };
         if page.is_none() && !self.no_page {
             packed += "; no page to move by hand, for which `make page` builds the solver";

@@ -219,15 +219,14 @@ fn forces(input: &Input, solver: &mut Solver) -> Result<String, Error> {
         return Ok(String::new());
     }
     let forces = Forces::at_rest(solver).map_err(|error| input.error(error))?;
-    let masses = match forces.masses.is_empty() {
-        true => String::new(),
-        false => {
-            let rows = forces
-                .masses
-                .iter()
-                .map(|(body, mass, inertia)| [body.clone(), shown(*mass), shown(*inertia)]);
-            table(&["Body", "Mass [kg]", "Inertia [kg m²]"], rows)
-        }
+    let masses = if forces.masses.is_empty() {
+        String::new()
+    } else {
+        let rows = forces
+            .masses
+            .iter()
+            .map(|(body, mass, inertia)| [body.clone(), shown(*mass), shown(*inertia)]);
+        table(&["Body", "Mass [kg]", "Inertia [kg m²]"], rows)
     };
     let values = forces
         .values

@@ -170,9 +170,12 @@ impl Run {
             recorders.push(Box::new(Events { path }));
         }
         let mut motion = SignalledMotion::start(home_solver, scenario);
-        motion = motion.and_then(|motion| match asks_forces {
-            true => motion.with_forces(asks_reactions),
-            false => motion.with_contacts_watched(),
+        motion = motion.and_then(|motion| {
+            if asks_forces {
+                motion.with_forces(asks_reactions)
+            } else {
+                motion.with_contacts_watched()
+            }
         });
         let motion = motion.map_err(|error| input.error_at(times.start, &error))?;
         let mut motion = motion.with_freedoms().map_err(|why| Error::Stopped {

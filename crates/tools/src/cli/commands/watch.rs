@@ -52,9 +52,10 @@ impl Watch {
             self.conditions.scenario(&input.mechanism, start, None)?;
         }
         // Options move the mechanism from where the file has it, which a hand would not respect.
-        let solver = match self.conditions.is_empty() {
-            true => page_solver::find(page_solver::Solver::Page)?,
-            false => None,
+        let solver = if self.conditions.is_empty() {
+            page_solver::find(page_solver::Solver::Page)?
+        } else {
+            None
         };
         let server = Server::new(&self.listening, 0)?;
         if solver.is_none() && self.conditions.is_empty() {

@@ -29,12 +29,13 @@ impl Input {
     ) -> Result<Self, Error> {
         let source = Source::open(path.display().to_string(), path).map_err(|error| {
             let named = format!("{}.toml", path.display());
-            match FilePath::new(&named).is_file() {
-                true => Error::Usage(format!(
+            if FilePath::new(&named).is_file() {
+                Error::Usage(format!(
                     "cannot read `{}`: {error}; did you mean `{named}`?",
                     path.display()
-                )),
-                false => Error::read(path)(error),
+                ))
+            } else {
+                Error::read(path)(error)
             }
         })?;
         Self::parse(source, show)

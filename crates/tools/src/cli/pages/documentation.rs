@@ -306,9 +306,10 @@ fn page(
     let interface = format!(
         ": {moved_by}; position, velocity and acceleration of the bodies are outputs, exact to {} at every \
          communication point.",
-        match mechanism.has_freedoms() {
-            true => "the tolerance",
-            false => "rounding",
+        if mechanism.has_freedoms() {
+            "the tolerance"
+        } else {
+            "rounding"
         }
     );
     let driven = fill(

@@ -63,9 +63,10 @@ impl Stage {
 
         let each = poses.len().div_ceil(LABEL_SAMPLES).max(1);
         let further: Vec<&[f64]> = poses.iter().step_by(each).skip(1).copied().collect();
-        let others = match labelled {
-            true => OtherPoses::Motion(&further),
-            false => OtherPoses::Glimpse,
+        let others = if labelled {
+            OtherPoses::Motion(&further)
+        } else {
+            OtherPoses::Glimpse
         };
         let (mut marks, labels) = Pen::draw(&scene.symbols, &scene.bodies, q, scale, others);
         marks.sort_by_key(|mark| mark.layer);

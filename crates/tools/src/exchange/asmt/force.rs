@@ -158,9 +158,10 @@ impl Reader<'_> {
     /// Makes what nothing drives freedoms, if forces may move it.
     pub(super) fn freedoms(&mut self) {
         let has_masses = self.draft.bodies.iter().any(|body| body.mass.is_some());
-        let free = match has_masses {
-            true => undriven(self.draft),
-            false => Vec::new(),
+        let free = if has_masses {
+            undriven(self.draft)
+        } else {
+            Vec::new()
         };
         let parts = self.assembly.parts.iter();
         let is_moving = parts
@@ -169,9 +170,10 @@ impl Reader<'_> {
             .any(|rate| *rate != 0.0);
         if free.is_empty() && is_moving {
             self.draft.note(Note::StartVelocities {
-                reason: match has_masses {
-                    true => "the motions give them",
-                    false => "without masses no forces move it",
+                reason: if has_masses {
+                    "the motions give them"
+                } else {
+                    "without masses no forces move it"
                 },
             });
         }

@@ -136,9 +136,10 @@ impl Reader<'_> {
         let [i, j] = &joint.markers;
         let mut from = self.place(i, Some(angle));
         // Without turning the second marker has the direction of the first one, as drawn.
-        let to = match keeps {
-            true => self.place(j, Some(angle)),
-            false => self.with_x_axis(j),
+        let to = if keeps {
+            self.place(j, Some(angle))
+        } else {
+            self.with_x_axis(j)
         };
         let kind = match (keeps, offset != 0.0) {
             (true, true) => {

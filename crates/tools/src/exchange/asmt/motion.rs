@@ -84,9 +84,10 @@ impl Reader<'_> {
             _ if text.parse::<f64>().is_ok() => format!("{text}*{}", unit.name()),
             _ => format!("({text})*{}", unit.name()),
         };
-        match side < 0.0 {
-            true => format!("-({scaled})"),
-            false => scaled,
+        if side < 0.0 {
+            format!("-({scaled})")
+        } else {
+            scaled
         }
     }
 
@@ -140,9 +141,10 @@ impl Reader<'_> {
                 &mut self.draft.stops[last]
             }
         };
-        match at_least {
-            true => stop.min = Some(value),
-            false => stop.max = Some(value),
+        if at_least {
+            stop.min = Some(value)
+        } else {
+            stop.max = Some(value)
         }
         Ok(())
     }

@@ -130,9 +130,10 @@ impl Arc {
         let sin = self.half.sin();
         // A chord whose arc is a millionth of its length off is a line.
         if sin.abs() < 1e-9 {
-            return match (0.0..=length).contains(&along) {
-                true => across.abs(),
-                false => nearest_end,
+            return if (0.0..=length).contains(&along) {
+                across.abs()
+            } else {
+                nearest_end
             };
         }
         // The centre lies to the left of the chord's middle by R cos(half), R with the sign of half.
@@ -141,9 +142,10 @@ impl Arc {
         let from_centre = [along - length / 2.0, across - height];
         // The arc is seen from its centre opposite to the side of the centre.
         let axis = [0.0, -radius.signum()];
-        match turn(axis, from_centre).abs() <= self.half.abs() {
-            true => (dot(from_centre, from_centre).sqrt() - radius.abs()).abs(),
-            false => nearest_end,
+        if turn(axis, from_centre).abs() <= self.half.abs() {
+            (dot(from_centre, from_centre).sqrt() - radius.abs()).abs()
+        } else {
+            nearest_end
         }
     }
 }
@@ -215,9 +217,12 @@ mod tests {
         let line = |s: f64| ([s, 0.0], [1.0, 0.0]);
         let vertices = fit(&line, [0.0, 1.0], 1e-9);
         assert!(vertices.iter().all(|vertex| vertex.bulge == 0.0));
-        let corner = |s: f64| match s < 0.3 {
-            true => ([s, 0.0], [1.0, 0.0]),
-            false => ([0.3, s - 0.3], [0.0, 1.0]),
+        let corner = |s: f64| {
+            if s < 0.3 {
+                ([s, 0.0], [1.0, 0.0])
+            } else {
+                ([0.3, s - 0.3], [0.0, 1.0])
+            }
         };
         assert!(fit(&corner, [0.0, 1.0], 1e-9).len() < 200);
     }

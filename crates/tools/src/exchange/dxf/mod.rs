@@ -274,9 +274,12 @@ fn build(drawing: &Drawing, pins: &[Pin], near: &Near, draft: &mut Draft) {
         sketch.add_link(layer, points);
     }
     let bodies = sketch.build(draft);
-    let body_of = |layer: &str| match is_ground(layer) {
-        true => Some(GROUND),
-        false => Some(bodies.of_link[*index_of.get(layer)?]),
+    let body_of = |layer: &str| {
+        if is_ground(layer) {
+            Some(GROUND)
+        } else {
+            Some(bodies.of_link[*index_of.get(layer)?])
+        }
     };
     for (pin, placed) in bodies.at_point.iter().enumerate() {
         if let [only] = placed[..]

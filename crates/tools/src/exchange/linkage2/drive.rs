@@ -89,24 +89,22 @@ impl Document<'_> {
                     reason: "its start is not between them",
                 });
             }
-            let (source, limits) = match element.is("alwaysmanual") || rpm == 0.0 {
-                true => {
-                    let start = draft.drawn(Coordinate::Angle, *from, *to);
-                    let ends = sweep.ends().map(|end| start + end.to_radians());
-                    (DriverSource::Input, is_swept.then_some(ends))
-                }
-                false if is_swept => {
-                    let cycle = 120.0 * sweep.stroke / (360.0 * rpm.abs());
-                    draft.run_for(cycle);
-                    let speed = draft.speed(-rpm);
-                    let rate = match speed.strip_prefix('-') {
-                        _ if rpm < 0.0 => speed,
-                        Some(speed) => speed.to_owned(),
-                        None => format!("-{speed}"),
-                    };
-                    (sweep.motion(&rate, 1_f64.to_radians()), None)
-                }
-                false => (draft.turning(-rpm), None),
+            let (source, limits) = if element.is("alwaysmanual") || rpm == 0.0 {
+                let start = draft.drawn(Coordinate::Angle, *from, *to);
+                let ends = sweep.ends().map(|end| start + end.to_radians());
+                (DriverSource::Input, is_swept.then_some(ends))
+            } else if is_swept {
+                let cycle = 120.0 * sweep.stroke / (360.0 * rpm.abs());
+                draft.run_for(cycle);
+                let speed = draft.speed(-rpm);
+                let rate = match speed.strip_prefix('-') {
+                    _ if rpm < 0.0 => speed,
+                    Some(speed) => speed.to_owned(),
+                    None => format!("-{speed}"),
+                };
+                (sweep.motion(&rate, 1_f64.to_radians()), None)
+            } else {
+                (draft.turning(-rpm), None)
             };
             draft.drivers.push(Driver {
                 name: format!("{name}_angle"),

@@ -155,9 +155,12 @@ impl Document<'_> {
         };
         let links = [link(a)?, link(b)?];
         let are_radii = element.is("sizeassize");
-        let sizes = [a.number("size")?, b.number("size")?].map(|size| match are_radii {
-            true => size / self.per_unit,
-            false => size,
+        let sizes = [a.number("size")?, b.number("size")?].map(|size| {
+            if are_radii {
+                size / self.per_unit
+            } else {
+                size
+            }
         });
         let axle = |link: usize| -> Option<(PointRef, usize)> {
             let point = *self.points_of[link].first()?;

@@ -239,9 +239,10 @@ impl<'a> Reader<'a> {
             },
         );
         let keeps = joint.is_welded || self.blocks.contains(&slid.body);
-        let kind = match keeps {
-            true => JointKind::Translational,
-            false => JointKind::Slot,
+        let kind = if keeps {
+            JointKind::Translational
+        } else {
+            JointKind::Slot
         };
         if keeps {
             draft.bodies[slid.body.0].points[slid.point].angle = Some(angle);

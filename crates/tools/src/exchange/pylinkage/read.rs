@@ -261,9 +261,10 @@ fn slides(
         if axis[0].hypot(axis[1]) <= 0.0 {
             return Err(wrong(&format!("{place}.axis"), "a direction"));
         }
-        let at = match joint.contains_key("line_point") {
-            true => pair(joint, "line_point", &place)?,
-            false => pair(joint, "position", &place)?,
+        let at = if joint.contains_key("line_point") {
+            pair(joint, "line_point", &place)?
+        } else {
+            pair(joint, "position", &place)?
         };
         let placed = bodies.at_point[point(id, &place)?].first();
         let Some(&slid) = placed.filter(|placed| placed.body != GROUND) else {

@@ -306,9 +306,12 @@ fn mirrored_list(editing: &Editing, path: &[&str]) -> String {
 /// Writes the negative of a number or of an expression.
 fn negative(value: &str) -> String {
     let inside = value.trim().trim_matches(['"', '\'']);
-    let quoted = |text: String| match value.starts_with(['"', '\'']) {
-        true => format!("\"{text}\""),
-        false => text,
+    let quoted = |text: String| {
+        if value.starts_with(['"', '\'']) {
+            format!("\"{text}\"")
+        } else {
+            text
+        }
     };
     let number = inside.replace('_', "").parse::<f64>();
     if number.as_ref().is_ok_and(|number| *number == 0.0) {

@@ -120,9 +120,10 @@ fn put_value_in_place(editing: &mut Editing, name: &str) {
     let is_plain = inside
         .chars()
         .all(|c| c.is_ascii_alphanumeric() || "._".contains(c));
-    let inside = match is_plain {
-        true => inside.to_owned(),
-        false => format!("({inside})"),
+    let inside = if is_plain {
+        inside.to_owned()
+    } else {
+        format!("({inside})")
     };
     let places = references(&editing.text).into_iter();
     let places = places.filter(|found| found.name == name && !found.is_in(&own));

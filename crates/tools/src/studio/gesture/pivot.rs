@@ -16,9 +16,10 @@ pub(super) fn pivot(editing: &mut Editing, path: &str) -> Result<(), Refusal> {
     let [x, y] = editing.drawn.point(marker);
     let wanted = marker_name(path);
     let is_taken = editing.text.has(&["ground", "markers", wanted]);
-    let letter = match is_taken {
-        true => editing.names.new_letter(),
-        false => wanted.to_owned(),
+    let letter = if is_taken {
+        editing.names.new_letter()
+    } else {
+        wanted.to_owned()
     };
     let ground = editing.add_marker("ground", &letter, [x, y, 0.0]);
     editing.join(&letter, "revolute", [&ground, path]);

@@ -23,9 +23,10 @@ pub(super) fn put(
     // A value and no more: no comment, no further line.
     let plain = TomlText::new(format!("value = {value}"));
     let is_toml = plain.is_ok_and(|plain| plain.get(&["value"]) == Some(&*value));
-    let written = match is_toml {
-        true => value.clone(),
-        false => toml_edit::Value::from(&*value).to_string(),
+    let written = if is_toml {
+        value.clone()
+    } else {
+        toml_edit::Value::from(&*value).to_string()
     };
     if let ["parameters", name, key] = path[..]
         && let Some(number) = editing
@@ -51,9 +52,10 @@ pub(super) fn put(
         follow_mass(editing, body, mass);
     }
     let Some(index) = element else {
-        match value.is_empty() {
-            true => editing.text.remove(&path),
-            false => editing.text.set(&path, &written),
+        if value.is_empty() {
+            editing.text.remove(&path)
+        } else {
+            editing.text.set(&path, &written)
         }
         return Ok(());
     };

@@ -57,12 +57,10 @@ pub(super) fn rename(editing: &mut Editing, old: &str, new: &str) -> Result<(), 
 pub(super) fn check_word(name: &str) -> Result<(), Refusal> {
     let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    match is_word {
-        true => Ok(()),
-        false => Err(format!(
-            "`{name}` is no name: a name is a letter, then letters, digits and `_`"
-        )
-        .into()),
+    if is_word {
+        Ok(())
+    } else {
+        Err(format!("`{name}` is no name: a name is a letter, then letters, digits and `_`").into())
     }
 }
 
@@ -74,9 +72,10 @@ pub(super) fn path_of(text: &TomlText, name: &str) -> Result<Vec<String>, Refusa
             "ground" => vec!["ground", "markers", marker],
             _ => vec!["bodies", body, "markers", marker],
         };
-        return match text.has(&path) {
-            true => Ok(owned(&path)),
-            false => Err(format!("there is no marker `{name}`").into()),
+        return if text.has(&path) {
+            Ok(owned(&path))
+        } else {
+            Err(format!("there is no marker `{name}`").into())
         };
     }
     let section = named().find(|section| text.has(&[section, name]));

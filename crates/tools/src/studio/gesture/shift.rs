@@ -139,9 +139,10 @@ fn meant(
     };
     let there = |marker: MarkerId| {
         let [x, y] = drawn.point(marker);
-        match moved.contains(&marker) {
-            true => [x + by[0], y + by[1]].map(|x| drawn.settled(x)),
-            false => [x, y],
+        if moved.contains(&marker) {
+            [x + by[0], y + by[1]].map(|x| drawn.settled(x))
+        } else {
+            [x, y]
         }
     };
     for marker in moved {
@@ -350,14 +351,16 @@ fn in_place_of(editing: &Editing, old: &str, value: f64, is_angle: bool) -> Opti
     let Some(own) = NumberInUnit::of(old) else {
         let old = old.trim().replace('_', "").parse::<f64>().ok()?;
         // An angle that was zero says nothing about its unit.
-        return Some(match is_angle && old != 0.0 {
-            true => written(exact_angle(value, 1.0)),
-            false => editing.value(value, is_angle),
+        return Some(if is_angle && old != 0.0 {
+            written(exact_angle(value, 1.0))
+        } else {
+            editing.value(value, is_angle)
         });
     };
-    let number = match is_angle {
-        true => exact_angle(value, own.factor()),
-        false => editing.exact(value, own.factor()),
+    let number = if is_angle {
+        exact_angle(value, own.factor())
+    } else {
+        editing.exact(value, own.factor())
     };
     Some(own.write(&written(number)))
 }

@@ -88,9 +88,10 @@ fn limits(
     };
     let slack = editing.same();
     if min.is_some_and(|min| now < min - slack) || max.is_some_and(|max| now > max + slack) {
-        let at = match is_angle {
-            true => format!("{}°", rounded(now.to_degrees(), SHOWN)),
-            false => format!("{} m", rounded(now, SHOWN)),
+        let at = if is_angle {
+            format!("{}°", rounded(now.to_degrees(), SHOWN))
+        } else {
+            format!("{} m", rounded(now, SHOWN))
         };
         return Err(format!("it is at {at} now: choose limits on both sides of that").into());
     }
@@ -100,9 +101,12 @@ fn limits(
         return Err("`min` is not below `max`".into());
     }
     // A limit may be turns away.
-    let write = |value: f64| match is_angle {
-        true => degrees(value, ANGLE_DECIMALS),
-        false => editing.usual(value),
+    let write = |value: f64| {
+        if is_angle {
+            degrees(value, ANGLE_DECIMALS)
+        } else {
+            editing.usual(value)
+        }
     };
     let limits = [("min", min), ("max", max)].into_iter();
     let limits = limits.filter_map(|(key, limit)| Some(format!("{key} = {}", write(limit?))));

@@ -54,9 +54,10 @@ impl Centre {
         });
         // The ring of a planetary gear may be ground, which is no wheel that turns.
         let mut wheels = wheels.filter(|id| mechanism.markers[id.index()].body.is_some());
-        let wheel = match fixed && mechanism.markers[marker.index()].body.is_some() {
-            true => Some(marker),
-            false => wheels.find(|id| pinned.contains(id)),
+        let wheel = if fixed && mechanism.markers[marker.index()].body.is_some() {
+            Some(marker)
+        } else {
+            wheels.find(|id| pinned.contains(id))
         };
         let others = pinned.iter().filter(|id| Some(**id) != wheel);
         let carriers = others.map(|id| editing.body_of(*id).map(str::to_owned));

@@ -123,13 +123,11 @@ fn on_belt(crossed: bool, radii: [f64; 2], apart: f64) -> Result<[f64; 2], Refus
     } else {
         f64::abs(first - second)
     };
-    match apart > room {
-        true => Ok(radii),
-        false if crossed => Err(
-            "the wheels overlap, where a belt cannot cross between them: make \
-                                 them smaller"
-                .into(),
-        ),
-        false => Err("one wheel is inside the other, where no belt runs: make it smaller".into()),
+    if apart > room {
+        Ok(radii)
+    } else if crossed {
+        Err("the wheels overlap, where a belt cannot cross between them: make them smaller".into())
+    } else {
+        Err("one wheel is inside the other, where no belt runs: make it smaller".into())
     }
 }

@@ -84,9 +84,10 @@ impl<'a> Actions<'a> {
             self.motion(joint, joints.len() > 1);
         }
         let is_traced = |id: &biela::mechanism::MarkerId| mechanism.marker_path(*id) == first;
-        let label = match mechanism.outputs.markers.iter().any(is_traced) {
-            true => "Hide its path",
-            false => "Show its path",
+        let label = if mechanism.outputs.markers.iter().any(is_traced) {
+            "Hide its path"
+        } else {
+            "Show its path"
         };
         self.offer(label, &json!({ "kind": "trace", "marker": first }));
         self.offer("Add a force", &json!({ "kind": "load", "marker": first }));

@@ -92,9 +92,10 @@ fn kind(schema: &Value) -> FieldKind {
         return FieldKind::Choice(words.collect());
     }
     if let Some(items) = schema["prefixItems"].as_array() {
-        return match items.iter().all(is_number) {
-            true => FieldKind::Numbers(items.len()),
-            false => FieldKind::Other,
+        return if items.iter().all(is_number) {
+            FieldKind::Numbers(items.len())
+        } else {
+            FieldKind::Other
         };
     }
     match schema["type"].as_str() {

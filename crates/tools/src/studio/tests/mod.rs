@@ -96,9 +96,10 @@ pub(super) fn shipped() -> (Vec<(String, String)>, Files) {
         let text = std::fs::read_to_string(&path)
             .expect("it is text")
             .replace("\r\n", "\n");
-        match extension == "toml" {
-            true => mechanisms.push((name, text)),
-            false => files.push((name, text)),
+        if extension == "toml" {
+            mechanisms.push((name, text))
+        } else {
+            files.push((name, text))
         }
     }
     mechanisms.sort();

@@ -77,7 +77,10 @@ fn a_report_of_free_motion_has_its_chart_its_events_and_its_frequencies() {
         assert!(page.contains(part), "{part}");
     }
     let page = report("servo_arm", &[]);
-    assert!(page.contains("impact at stop ends with"), "events are listed");
+    assert!(
+        page.contains("impact at stop ends with"),
+        "events are listed"
+    );
     // Nothing moves by itself.
     assert!(!report("four_bar", &[]).contains("<h2>Motion</h2>"));
 }

@@ -68,9 +68,10 @@ pub fn row_of_masses(chance: &mut Chance, mut text: Text) -> Case {
     let is_pushed = is(chance, 0.6);
     let has_springs = is_pushed && is(chance, 0.3);
     let touches = is(chance, 0.2);
-    let slope: f64 = match is_pushed {
-        true => chance.between(0.1, FRAC_PI_2),
-        false => 0.0,
+    let slope: f64 = if is_pushed {
+        chance.between(0.1, FRAC_PI_2)
+    } else {
+        0.0
     };
     let duration = chance.between(0.5, 2.0);
     text.ground("G", [0.0, 0.0], slope);
@@ -81,19 +82,17 @@ pub fn row_of_masses(chance: &mut Chance, mut text: Text) -> Case {
     };
     let one = chance.between(0.0, 0.9);
     let own = is(chance, 0.5);
-    let restitution = |chance: &mut Chance| match own {
-        true => chance.between(0.0, 0.95),
-        false => one,
-    };
+    let restitution = |chance: &mut Chance| if own { chance.between(0.0, 0.95) } else { one };
     let mut checks = Vec::new();
     let (mut place, mut last) = (0.0, "ground.G".to_owned());
     for k in 0..=count {
         let name = format!("m{k}");
         let size = [0.0, chance.between(0.05, 0.2)][usize::from(k > 0)];
         // A row without any play would not move.
-        let gap = match touches && k < count && is(chance, 0.7) {
-            true => 0.0,
-            false => log_between(chance, 1e-3, 0.4),
+        let gap = if touches && k < count && is(chance, 0.7) {
+            0.0
+        } else {
+            log_between(chance, 1e-3, 0.4)
         };
         let e = restitution(chance);
         let stop = format!("hit{k}");
@@ -124,9 +123,10 @@ pub fn row_of_masses(chance: &mut Chance, mut text: Text) -> Case {
         place += size + gap;
         let body = format!("{name}.O");
         let mass = log_between(chance, 0.2, 5.0);
-        let speed = match is(chance, 0.5) {
-            true => chance.between(-2.0, 2.0),
-            false => 0.0,
+        let speed = if is(chance, 0.5) {
+            chance.between(-2.0, 2.0)
+        } else {
+            0.0
         };
         let (sin, cos) = slope.sin_cos();
         let estimate = [place * cos, place * sin, slope];

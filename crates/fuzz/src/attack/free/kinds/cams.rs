@@ -25,9 +25,10 @@ impl Contour {
         Self {
             radius,
             eccentricity: radius * chance.between(0.05, 0.75),
-            lobe: match is_convex || is(chance, 0.4) {
-                true => 0.0,
-                false => radius * chance.between(0.05, 0.3),
+            lobe: if is_convex || is(chance, 0.4) {
+                0.0
+            } else {
+                radius * chance.between(0.05, 0.3)
             },
             width: log_between(chance, 0.05, 0.5),
             place: chance.between(-PI, PI),
@@ -56,9 +57,10 @@ impl Contour {
             place,
         } = self;
         let circle = format!("{e:?}*cos(theta) + sqrt({r:?}^2 - ({e:?}*sin(theta))^2)");
-        match *lobe > 0.0 {
-            true => format!("{circle} + {lobe:?}*exp(-(sin((theta - ({place:?}))/2)/{width:?})^2)"),
-            false => circle,
+        if *lobe > 0.0 {
+            format!("{circle} + {lobe:?}*exp(-(sin((theta - ({place:?}))/2)/{width:?})^2)")
+        } else {
+            circle
         }
     }
 
@@ -86,9 +88,10 @@ impl Contour {
             // The hollow has to be wider than the roller by half of it.
             turned * 1.5 * radius < -(here * here + slope * slope).powf(1.5)
         });
-        match is_hollow {
-            true => Self { lobe: 0.0, ..self },
-            false => self,
+        if is_hollow {
+            Self { lobe: 0.0, ..self }
+        } else {
+            self
         }
     }
 
@@ -133,9 +136,10 @@ pub fn cam_tappet(chance: &mut Chance, mut text: Text) -> Case {
         _ => 0.0,
     };
     let touches = follower == "knife" && is(chance, 0.5);
-    let start = match touches {
-        true => contour.at(FRAC_PI_2),
-        false => contour.largest() + above + log_between(chance, 1e-4, 0.03),
+    let start = if touches {
+        contour.at(FRAC_PI_2)
+    } else {
+        contour.largest() + above + log_between(chance, 1e-4, 0.03)
     };
     let duration = chance.between(0.3, 1.5);
     let speed = [0.0, chance.between(-0.5, 0.5)][chance.below(2)];

@@ -23,9 +23,10 @@ pub fn friction_plate(chance: &mut Chance, mut text: Text) -> Case {
     let mass = chance.between(0.5, 3.0);
     let sliding = log_between(chance, 0.2, 20.0);
     let sticking = sliding * [1.0, chance.between(1.0, 1.5)][chance.below(2)];
-    let load = match is(chance, 0.4) {
-        true => sliding * chance.between(-0.8, 0.8),
-        false => 0.0,
+    let load = if is(chance, 0.4) {
+        sliding * chance.between(-0.8, 0.8)
+    } else {
+        0.0
     };
     let speed = match chance.below(3) {
         0 => 0.0,
@@ -178,9 +179,10 @@ pub fn stick_slip(chance: &mut Chance, mut text: Text) -> Case {
     let speed = text.nudged(log_between(chance, 0.01, 1.0));
     let stiffness = text.nudged(mass * log_between(chance, 20.0, 5000.0));
     let has_stribeck = is(chance, 0.4);
-    let motion = match is(chance, 0.7) {
-        true => format!("{speed:?}*t"),
-        false => format!("{speed:?}*t + 0.05*sin({:?}*t)", chance.between(1.0, 10.0)),
+    let motion = if is(chance, 0.7) {
+        format!("{speed:?}*t")
+    } else {
+        format!("{speed:?}*t + 0.05*sin({:?}*t)", chance.between(1.0, 10.0))
     };
     text.ground("G", [0.0, 0.0], 0.0);
     text.body("belt", "O = [0, 0]", [0.0; 3], [1.0, 0.0, 0.0]);
@@ -192,9 +194,10 @@ pub fn stick_slip(chance: &mut Chance, mut text: Text) -> Case {
     text.freedom("b", "x", ["ground.G", "block.O"], [start, 0.0]);
     let more = format!(", stiffness = {stiffness:?}, free = 0");
     text.along("forces", "spring", "x", ["ground.G", "block.O"], &more);
-    let stribeck = match has_stribeck {
-        true => format!(", stribeck = {:?}", log_between(chance, 0.01, 0.5)),
-        false => String::new(),
+    let stribeck = if has_stribeck {
+        format!(", stribeck = {:?}", log_between(chance, 0.01, 0.5))
+    } else {
+        String::new()
     };
     let more = format!(", force = {sliding:?}, static = {sticking:?}{stribeck}");
     text.along("friction", "rub", "x", ["belt.O", "block.O"], &more);

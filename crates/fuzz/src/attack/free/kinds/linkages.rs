@@ -37,9 +37,12 @@ fn add_stop(chance: &mut Chance, text: &mut Text, checks: &mut Vec<Check>, name:
     if !is(chance, 0.5) {
         return;
     }
-    let mut away = || match is(chance, 0.7) {
-        true => chance.between(0.05, 2.0),
-        false => 100.0,
+    let mut away = || {
+        if is(chance, 0.7) {
+            chance.between(0.05, 2.0)
+        } else {
+            100.0
+        }
     };
     let [least, most] = [start - away(), start + away()];
     let restitution = text.nudged([0.0, chance.between(0.0, 0.8)][chance.below(2)]);
@@ -205,9 +208,10 @@ pub fn slider_crank(chance: &mut Chance, mut text: Text) -> Case {
     let rubs_in_guide = is(chance, 0.5);
     if rubs_in_guide {
         let coefficient = chance.between(0.02, 0.3);
-        let length = match is(chance, 0.5) {
-            true => format!(", length = {:?}", chance.between(0.05, 0.2)),
-            false => String::new(),
+        let length = if is(chance, 0.5) {
+            format!(", length = {:?}", chance.between(0.05, 0.2))
+        } else {
+            String::new()
         };
         text.add(
             "friction",
@@ -256,47 +260,46 @@ pub fn slider_crank(chance: &mut Chance, mut text: Text) -> Case {
 /// friction.
 pub fn dead_points(chance: &mut Chance, mut text: Text) -> Case {
     let length = chance.between(0.5, 2.0);
-    let start = match is(chance, 0.5) {
-        true => -FRAC_PI_2 + chance.between(-1.4, 1.4),
-        false => angle(chance),
+    let start = if is(chance, 0.5) {
+        -FRAC_PI_2 + chance.between(-1.4, 1.4)
+    } else {
+        angle(chance)
     };
     let tip = end([0.0, 0.0], length, start);
     let is_platform = is(chance, 0.5);
     let mass = chance.between(0.3, 3.0);
     text.ground("O", [0.0, 0.0], 0.0);
-    let markers = match is_platform {
-        true => {
-            let width = chance.between(0.5, 1.5);
-            text.ground("P", [width, 0.0], 0.0);
-            let markers = format!("A = [0, 0], B = [{width:?}, 0]");
-            text.body(
-                "seat",
-                &markers,
-                [tip[0], tip[1], 0.0],
-                [mass, 0.1, 0.5 * width],
-            );
-            let more = format!(", length = {length:?}");
-            text.joint("left", "link", ["ground.O", "seat.A"], &more);
-            text.joint("right", "link", ["ground.P", "seat.B"], &more);
-            ["ground.O", "seat.A"]
-        }
-        false => {
-            let own = format!("O = [0, 0], T = [{length:?}, 0]");
-            let inertia = mass * length * length / 12.0;
-            text.body(
-                "rod",
-                &own,
-                [0.0, 0.0, start],
-                [mass, inertia, 0.5 * length],
-            );
-            text.joint("O", "revolute", ["ground.O", "rod.O"], "");
-            ["ground.O", "rod.T"]
-        }
+    let markers = if is_platform {
+        let width = chance.between(0.5, 1.5);
+        text.ground("P", [width, 0.0], 0.0);
+        let markers = format!("A = [0, 0], B = [{width:?}, 0]");
+        text.body(
+            "seat",
+            &markers,
+            [tip[0], tip[1], 0.0],
+            [mass, 0.1, 0.5 * width],
+        );
+        let more = format!(", length = {length:?}");
+        text.joint("left", "link", ["ground.O", "seat.A"], &more);
+        text.joint("right", "link", ["ground.P", "seat.B"], &more);
+        ["ground.O", "seat.A"]
+    } else {
+        let own = format!("O = [0, 0], T = [{length:?}, 0]");
+        let inertia = mass * length * length / 12.0;
+        text.body(
+            "rod",
+            &own,
+            [0.0, 0.0, start],
+            [mass, inertia, 0.5 * length],
+        );
+        text.joint("O", "revolute", ["ground.O", "rod.O"], "");
+        ["ground.O", "rod.T"]
     };
     let speed = [0.0, chance.between(-2.0, 2.0)][chance.below(2)];
-    match is(chance, 0.5) {
-        true => text.freedom("u", "y", markers, [tip[1], speed]),
-        false => text.freedom("u", "x", markers, [tip[0], speed]),
+    if is(chance, 0.5) {
+        text.freedom("u", "y", markers, [tip[1], speed])
+    } else {
+        text.freedom("u", "x", markers, [tip[0], speed])
     }
     let mut checks = vec![Check::Energy];
     text.along("measures", "aside", "x", markers, "");

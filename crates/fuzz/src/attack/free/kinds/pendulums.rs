@@ -110,15 +110,12 @@ pub fn cradle(chance: &mut Chance, mut text: Text) -> Case {
         );
         let tip = format!("{name}.T");
         if k > 0 {
-            let more = match is_elastic {
-                true => {
-                    let stiffness = text.nudged(log_between(chance, 1e3, 1e5));
-                    format!(", min = {width:?}, stiffness = {stiffness:?}")
-                }
-                false => {
-                    let restitution = text.nudged(one);
-                    format!(", min = {width:?}, restitution = {restitution:?}")
-                }
+            let more = if is_elastic {
+                let stiffness = text.nudged(log_between(chance, 1e3, 1e5));
+                format!(", min = {width:?}, stiffness = {stiffness:?}")
+            } else {
+                let restitution = text.nudged(one);
+                format!(", min = {width:?}, restitution = {restitution:?}")
             };
             // Along the horizontal of ground.
             let more = format!(", axes = 'ground.O0'{more}");
@@ -213,17 +210,14 @@ fn add_contacts(
     if is(chance, 0.7) {
         let [least, most] = [chance.between(-reach, -0.2), chance.between(0.2, reach)];
         is_elastic = is(chance, 0.4);
-        let more = match is_elastic {
-            true => {
-                let stiffness = text.nudged(log_between(chance, 50.0, 5000.0));
-                let damping = chance.between(0.0, 5.0);
-                format!("stiffness = {stiffness:?}, damping = {damping:?}")
-            }
-            false => {
-                checks.push(Check::stop(name, [least, most]));
-                let restitution = chance.between(0.0, 0.9);
-                format!("restitution = {:?}", text.nudged(restitution))
-            }
+        let more = if is_elastic {
+            let stiffness = text.nudged(log_between(chance, 50.0, 5000.0));
+            let damping = chance.between(0.0, 5.0);
+            format!("stiffness = {stiffness:?}, damping = {damping:?}")
+        } else {
+            checks.push(Check::stop(name, [least, most]));
+            let restitution = chance.between(0.0, 0.9);
+            format!("restitution = {:?}", text.nudged(restitution))
         };
         let entry = format!("{{ of = '{name}', min = {least:?}, max = {most:?}, {more} }}");
         text.add("stops", &format!("stop_{name}"), &entry);

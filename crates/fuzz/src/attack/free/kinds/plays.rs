@@ -15,9 +15,10 @@ fn load_wheel(chance: &mut Chance, text: &mut Text, checks: &mut Vec<Check>, k: 
     if is(chance, 0.7) {
         let torque = text.nudged(log_between(chance, 0.1, 15.0) * sign(chance));
         let [rate, phase] = [chance.between(0.5, 20.0), chance.between(-PI, PI)];
-        let value = match is(chance, 0.2) {
-            true => format!("{torque:?}"),
-            false => format!("'{torque:?}*sin({rate:?}*t + ({phase:?}))'"),
+        let value = if is(chance, 0.2) {
+            format!("{torque:?}")
+        } else {
+            format!("'{torque:?}*sin({rate:?}*t + ({phase:?}))'")
         };
         text.along(
             "forces",
@@ -242,9 +243,10 @@ pub fn hoist(chance: &mut Chance, mut text: Text) -> Case {
         text.freedom(&freedom, "x", markers, [height, speed]);
         // The rope ends where a weight meets the pulley.
         let most = top - radius;
-        let least = match is(chance, 0.6) {
-            true => height - log_between(chance, 0.01, 0.6),
-            false => height - 10.0,
+        let least = if is(chance, 0.6) {
+            height - log_between(chance, 0.01, 0.6)
+        } else {
+            height - 10.0
         };
         let restitution = text.nudged(chance.between(0.0, 0.8));
         let entry = format!(
@@ -317,9 +319,10 @@ pub fn rack_play(chance: &mut Chance, mut text: Text) -> Case {
         let speed = [0.0, chance.between(-10.0, 10.0)][chance.below(2)];
         text.freedom("turn", "angle", pins, [0.0, speed]);
         let torque = text.nudged(mass * radius * chance.between(-30.0, 30.0));
-        let value = match is(chance, 0.3) {
-            true => format!("{torque:?}"),
-            false => format!("'{torque:?}*sin({rate:?}*t)'"),
+        let value = if is(chance, 0.3) {
+            format!("{torque:?}")
+        } else {
+            format!("'{torque:?}*sin({rate:?}*t)'")
         };
         text.along(
             "forces",

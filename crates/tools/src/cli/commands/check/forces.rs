@@ -123,9 +123,10 @@ impl Forces {
 
     /// Returns the text of the report.
     pub(super) fn describe(&self, mechanism: &Mechanism) -> String {
-        let held = match mechanism.has_freedoms() {
-            true => ", with the freedoms held",
-            false => "",
+        let held = if mechanism.has_freedoms() {
+            ", with the freedoms held"
+        } else {
+            ""
         };
         let mut out = format!("\nforces at rest{held}\n");
         for (body, mass, inertia) in &self.masses {

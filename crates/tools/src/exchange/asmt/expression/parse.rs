@@ -120,9 +120,10 @@ impl Parser<'_> {
             term = binary('^', term, self.signed()?);
             self.depth -= 1;
         }
-        Some(match is_negative {
-            true => Negative(Box::new(term)),
-            false => term,
+        Some(if is_negative {
+            Negative(Box::new(term))
+        } else {
+            term
         })
     }
 
