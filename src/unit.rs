@@ -1,14 +1,16 @@
 //! Units of quantities. All inside is SI; a unit serves the FMU's description and labels.
 
+mod name;
 mod written;
 
+pub use name::UnitName;
 pub use written::{UnitFault, size_of_unit, symbols};
 
 /// A unit of the International System with its exponents of the base units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// Its symbol, as in `unit = "rad/s"`.
-    pub name: &'static str,
+    pub name: UnitName,
     /// Its dimension.
     pub dimension: Dimension,
     /// The unit in which a host should show the values, if not this one.
@@ -36,7 +38,7 @@ pub struct Dimension {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisplayUnit {
     /// Its symbol, as in `display = "mm"`.
-    pub name: &'static str,
+    pub name: UnitName,
     /// Factor from an SI value to the value shown.
     pub factor: f64,
     /// Its dimension.
@@ -98,7 +100,7 @@ impl Dimension {
     #[must_use]
     pub fn symbol(self) -> String {
         if let Some(unit) = Unit::ALL.iter().find(|unit| unit.dimension == self) {
-            return unit.name.to_owned();
+            return unit.name.to_string();
         }
         let part = |is_above: bool| {
             let powers = self.base_units();
@@ -261,7 +263,7 @@ impl Unit {
 
     const fn new(name: &'static str, dimension: Dimension) -> Self {
         Self {
-            name,
+            name: UnitName::new(name),
             dimension,
             display: None,
         }
@@ -269,7 +271,7 @@ impl Unit {
 
     /// Returns the name of the unit in which values are shown.
     #[must_use]
-    pub fn display_name(self) -> &'static str {
+    pub fn display_name(self) -> UnitName {
         self.display.map_or(self.name, |display| display.name)
     }
 
@@ -306,7 +308,7 @@ impl Unit {
 impl DisplayUnit {
     /// The metre.
     pub const METRE: Self = Self {
-        name: "m",
+        name: UnitName::new("m"),
         factor: 1.0,
         dimension: LENGTH,
     };
@@ -342,7 +344,7 @@ impl DisplayUnit {
 
     const fn new(name: &'static str, factor: f64, dimension: Dimension) -> Self {
         Self {
-            name,
+            name: UnitName::new(name),
             factor,
             dimension,
         }
@@ -353,7 +355,13 @@ impl DisplayUnit {
     pub fn as_si(self) -> Option<Unit> {
         let known = || Unit::ALL.into_iter().find(|unit| unit.name == self.name);
         let is_si = self.factor.to_bits() == 1.0_f64.to_bits();
-        is_si.then(|| known().unwrap_or(Unit::new(self.name, self.dimension)))
+        is_si.then(|| {
+            known().unwrap_or(Unit {
+                name: self.name,
+                dimension: self.dimension,
+                display: None,
+            })
+        })
     }
 }
 
@@ -366,10 +374,10 @@ mod tests {
     #[test]
     fn every_unit_is_found_by_its_name() {
         for unit in Unit::ALL {
-            assert_eq!(Unit::by_name(unit.name), Some(unit));
+            assert_eq!(Unit::by_name(&unit.name), Some(unit));
         }
         for unit in DisplayUnit::ALL {
-            assert_eq!(DisplayUnit::read(unit.name), Ok(unit));
+            assert_eq!(DisplayUnit::read(&unit.name), Ok(unit));
         }
         assert_eq!(Unit::by_name("mm"), None);
     }
@@ -448,7 +456,7 @@ mod tests {
                 assert_eq!(display.dimension, unit.dimension, "{}", unit.name);
             }
         }
-        let names: Vec<&str> = Unit::RADIAN_PER_SECOND
+        let names: Vec<UnitName> = Unit::RADIAN_PER_SECOND
             .display_units()
             .map(|unit| unit.name)
             .collect();

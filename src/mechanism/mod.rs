@@ -67,7 +67,7 @@ mod toml_error;
 mod unit_slip;
 mod wording;
 
-pub use crate::unit::{Dimension, DisplayUnit, Unit};
+pub use crate::unit::{Dimension, DisplayUnit, Unit, UnitName};
 pub use coordinate::{Coordinate, CoordinateKind};
 pub use coupling::{CoordinateEquation, MOST_COUPLED, Phase};
 pub use curve::{Curve, CurveShape, PointPath};

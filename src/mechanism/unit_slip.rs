@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::wording::shown;
-use crate::unit::DisplayUnit;
+use crate::unit::{DisplayUnit, UnitName};
 
 /// Least length \[m\] that may have been meant in millimetres: few mechanisms are larger.
 pub(super) const LARGE: f64 = 10.0;
@@ -51,7 +51,7 @@ pub fn large_length(
     length: f64,
     usual: f64,
     display: Option<DisplayUnit>,
-) -> Option<(String, &'static str)> {
+) -> Option<(String, UnitName)> {
     if let Some(found) = display.and_then(|display| large_in(length, display)) {
         return Some(found);
     }
@@ -60,13 +60,13 @@ pub fn large_length(
     is_suspect.then(|| {
         (
             format!("a length of {length} m in place of {usual} m"),
-            "mm",
+            DisplayUnit::MILLIMETRE.name,
         )
     })
 }
 
 /// Says that a length \[m\] looks like one in the unit that shows it, whose name is the second text.
-pub(super) fn large_in(length: f64, display: DisplayUnit) -> Option<(String, &'static str)> {
+pub(super) fn large_in(length: f64, display: DisplayUnit) -> Option<(String, UnitName)> {
     let is_decimal = [DisplayUnit::MILLIMETRE, DisplayUnit::CENTIMETRE].contains(&display);
     let (number, name) = (shown(length), display.name);
     let shown = shown(length * display.factor);

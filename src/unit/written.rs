@@ -1,10 +1,9 @@
 //! Units as they are written: products and quotients of symbols with prefixes, such as `kN.m/deg`.
 
-use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
 
+use super::name::{LONGEST, UnitName};
 use super::{ANGLE, ANGULAR_VELOCITY, Dimension, DisplayUnit, LENGTH, MASS, Unit, electric};
 
 /// Fault of a text that is no unit.
@@ -114,9 +113,6 @@ const PREFIXES: [(&str, [f64; 2]); 14] = [
     ("G", [1e9, 1.0]),
     ("T", [1e12, 1.0]),
 ];
-
-/// Longest text of a unit.
-const LONGEST: usize = 64;
 
 /// Product of symbols: one of it is above / below in SI.
 #[derive(Clone, Copy, Debug)]
@@ -262,18 +258,6 @@ impl Reader<'_> {
     }
 }
 
-/// Returns a name that lasts as long as the program; the files that it reads have few.
-fn lasting(name: &str) -> &'static str {
-    static NAMES: Mutex<BTreeSet<&str>> = Mutex::new(BTreeSet::new());
-    let mut known = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(name) = known.get(name) {
-        return name;
-    }
-    let name = Box::leak(name.to_owned().into_boxed_str());
-    known.insert(name);
-    name
-}
-
 impl DisplayUnit {
     /// Reads a unit: symbols with prefixes and exponents, products and quotients of them from left to
     /// right, `1`, and brackets, such as `kN`, `l/min` and `W/(m2.K)`.
@@ -284,7 +268,7 @@ impl DisplayUnit {
     pub fn read(text: &str) -> Result<Self, UnitFault> {
         let unit = read(text)?;
         Ok(Self {
-            name: lasting(text),
+            name: UnitName::new(text),
             factor: unit.below / unit.above,
             dimension: unit.dimension,
         })

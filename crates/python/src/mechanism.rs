@@ -183,9 +183,9 @@ impl Mechanism {
 
     /// Returns the names and units of the columns of a run.
     #[getter]
-    fn columns(&self, py: Python<'_>) -> Result<Vec<(String, &'static str)>, Failure> {
+    fn columns(&self, py: Python<'_>) -> Result<Vec<(String, String)>, Failure> {
         let columns = apart(py, || Ok(self.all_columns()))?.iter();
-        let columns = columns.map(|column| (column.name.clone(), column.unit.name));
+        let columns = columns.map(|column| (column.name.clone(), column.unit.name.to_string()));
         Ok(columns.collect())
     }
 

@@ -24,7 +24,7 @@ pub(crate) type ParameterRow = (
     String,
     String,
     f64,
-    &'static str,
+    String,
     Option<f64>,
     Option<f64>,
     Option<f64>,
@@ -36,7 +36,7 @@ pub(crate) type ParameterRow = (
 pub(crate) type DriverRow = (
     String,
     String,
-    &'static str,
+    String,
     Option<f64>,
     Option<f64>,
     Option<f64>,
@@ -45,7 +45,7 @@ pub(crate) type DriverRow = (
 );
 
 /// An input, a force or a measure: name, description, unit, and the variable that has its value.
-pub(crate) type NamedRow = (String, String, &'static str, String);
+pub(crate) type NamedRow = (String, String, String, String);
 
 /// Name, force and description of what holds a coordinate.
 type HeldRow = (String, f64, String);
@@ -103,7 +103,7 @@ pub(crate) fn parameter_row(p: &Parameter) -> ParameterRow {
         p.name.clone(),
         p.description.clone(),
         p.default,
-        p.unit.unwrap_or(Unit::ONE).name,
+        p.unit.unwrap_or(Unit::ONE).name.to_string(),
         p.min,
         p.max,
         p.tolerance,
@@ -116,7 +116,7 @@ pub(crate) fn driver_row(d: &Driver) -> DriverRow {
     (
         d.name.clone(),
         d.description.clone(),
-        d.coordinate.kind.unit().name,
+        d.coordinate.kind.unit().name.to_string(),
         d.start(),
         d.min,
         d.max,
@@ -139,13 +139,18 @@ pub(crate) fn forces(mechanism: &Mechanism) -> Vec<NamedRow> {
 
 fn force_row(force: ForceComponent) -> NamedRow {
     let variable = force.name.clone();
-    (force.name, force.description, force.unit.name, variable)
+    (
+        force.name,
+        force.description,
+        force.unit.name.to_string(),
+        variable,
+    )
 }
 
 /// Returns the measures as rows: those of coordinates, then those computed from others.
 pub(crate) fn measures(mechanism: &Mechanism) -> Vec<NamedRow> {
     let of_coordinates = mechanism.measures.iter().map(|measure| {
-        let unit = measure.coordinate.kind.unit().name;
+        let unit = measure.coordinate.kind.unit().name.to_string();
         let variable = format!("{}.position", measure.name);
         (
             measure.name.clone(),
@@ -155,7 +160,7 @@ pub(crate) fn measures(mechanism: &Mechanism) -> Vec<NamedRow> {
         )
     });
     let derived = mechanism.derived.iter().map(|measure| {
-        let unit = measure.unit.unwrap_or(Unit::ONE).name;
+        let unit = measure.unit.unwrap_or(Unit::ONE).name.to_string();
         (
             measure.name.clone(),
             measure.description.clone(),

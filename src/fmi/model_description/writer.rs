@@ -166,7 +166,7 @@ fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
         for (unit, displays) in &units {
             let definition = xml
                 .create_element("Unit")
-                .with_attribute(("name", unit.name));
+                .with_attribute(("name", unit.name.as_str()));
             definition.with_content(|xml| {
                 let mut base = xml.create_element("BaseUnit");
                 for (name, exponent) in unit.dimension.base_units() {
@@ -176,7 +176,7 @@ fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
                 for display in displays {
                     xml.create_element("DisplayUnit")
                         .with_attributes([
-                            ("name", display.name),
+                            ("name", display.name.as_str()),
                             ("factor", &number(display.factor)),
                         ])
                         .empty()?;
@@ -223,7 +223,7 @@ fn types<Q>(variables: &[Variable<Q>]) -> Vec<Type> {
                 unit: Some(unit), ..
             } => {
                 // A variable may have another display unit than its type.
-                let usual = Unit::by_name(unit.name).unwrap_or(unit);
+                let usual = Unit::by_name(&unit.name).unwrap_or(unit);
                 if let Some(name) = type_of(usual).filter(|name| names.insert(*name)) {
                     types.push(Type::Real(name, usual));
                 }
@@ -248,9 +248,9 @@ fn write_types<Q>(xml: &mut Xml, standard: Version, variables: &[Variable<Q>]) -
             Type::Real(name, unit) => {
                 write_type(xml, standard, name, ["Real", "Float64Type"], |element| {
                     let quantity = name.trim_start_matches("biela.");
-                    let display = unit.display.map(|display| display.name);
+                    let display = unit.display.as_ref().map(|display| display.name.as_str());
                     element
-                        .with_attributes([("quantity", quantity), ("unit", unit.name)])
+                        .with_attributes([("quantity", quantity), ("unit", unit.name.as_str())])
                         .with_optional(&[("displayUnit", display)])
                         .empty()
                 })
@@ -392,8 +392,11 @@ fn write_values<Q>(
             let derivative = derivative.map(|of| value_reference(of).to_string());
             element.with_optional(&[
                 ("declaredType", unit.and_then(type_of)),
-                ("unit", unit.map(|unit| unit.name)),
-                ("displayUnit", display.map(|display| display.name)),
+                ("unit", unit.as_ref().map(|unit| unit.name.as_str())),
+                (
+                    "displayUnit",
+                    display.as_ref().map(|display| display.name.as_str()),
+                ),
                 ("min", min.as_deref()),
                 ("max", max.as_deref()),
                 ("nominal", nominal.as_deref()),

@@ -11,6 +11,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::names;
 use crate::mechanism::syntax::{Key, Table, Value};
 use crate::mechanism::wording::quoted;
+use crate::unit::UnitName;
 
 use super::context::Context;
 
@@ -26,7 +27,7 @@ pub(super) trait Kind<'a> {
     fn schema(&self) -> serde_json::Value;
 
     /// Returns the unit of the value's numbers.
-    fn unit(&self) -> Option<&'static str> {
+    fn unit(&self) -> Option<UnitName> {
         None
     }
 }
@@ -249,7 +250,7 @@ impl<'a, K: Kind<'a>, const N: usize> Kind<'a> for Array<K, N> {
         }
     }
 
-    fn unit(&self) -> Option<&'static str> {
+    fn unit(&self) -> Option<UnitName> {
         self.items[0].unit()
     }
 }

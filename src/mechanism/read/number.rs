@@ -7,6 +7,7 @@ use crate::mechanism::expression::{MovingNames, Parsed, Scope};
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::{quoted, shown};
 use crate::mechanism::{Dimension, Expression, ExpressionError, Jet, Span, Unit, Variable};
+use crate::unit::UnitName;
 
 use super::context::Context;
 use super::kind::{Array, Item, Kind, schema};
@@ -93,7 +94,7 @@ impl<'a> Kind<'a> for Number {
         }
     }
 
-    fn unit(&self) -> Option<&'static str> {
+    fn unit(&self) -> Option<UnitName> {
         self.unit.map(|unit| unit.name)
     }
 }

@@ -245,7 +245,8 @@ impl<'a> Context<'a> {
             return Some(unit);
         };
         if display.dimension != unit.dimension {
-            let fitting: Vec<&str> = unit.display_units().map(|unit| unit.name).collect();
+            let fitting: Vec<DisplayUnit> = unit.display_units().collect();
+            let fitting: Vec<&str> = fitting.iter().map(|unit| &*unit.name).collect();
             let help = match fitting.as_slice() {
                 [] => format!("expected a multiple or a part of `{}`", unit.name),
                 fitting => format!("expected {}", either(fitting)),

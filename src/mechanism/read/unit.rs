@@ -6,7 +6,7 @@ use crate::mechanism::names::nearest;
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{DisplayUnit, Expression, Unit};
-use crate::unit::{UnitFault, size_of_unit, symbols};
+use crate::unit::{UnitFault, UnitName, size_of_unit, symbols};
 
 use super::context::Context;
 use super::kind::{Item, Kind, schema, word_here};
@@ -97,9 +97,9 @@ fn symbol_of(word: &str) -> Option<String> {
 /// Returns the unit that a text which is none may mean.
 fn meant(text: &str) -> Option<String> {
     // `Nm`, `N*m`, `m/s²`, `kg m^2`: other signs between the same letters.
-    let is_meant = |unit: &&Unit| letters(unit.name).eq_ignore_ascii_case(&letters(text));
+    let is_meant = |unit: &&Unit| letters(&unit.name).eq_ignore_ascii_case(&letters(text));
     if let Some(unit) = Unit::ALL.iter().find(is_meant) {
-        return Some(unit.name.to_owned());
+        return Some(unit.name.to_string());
     }
     let mut meant = text.trim().replace(['*', '·', ' '], ".").replace('^', "");
     meant = meant.replace('²', "2").replace('³', "3");
@@ -162,7 +162,8 @@ fn in_si(unit: DisplayUnit) -> String {
 }
 
 /// Returns the JSON Schema of a unit, with those that editors propose.
-fn schema_of(names: &[&str]) -> serde_json::Value {
+fn schema_of(names: &[UnitName]) -> serde_json::Value {
+    let names: Vec<&str> = names.iter().map(|name| &**name).collect();
     serde_json::json!({ "anyOf": [{ "enum": names }, { "type": "string" }] })
 }
 

@@ -47,14 +47,16 @@ fn every_derivative_of_a_force_agrees_with_differences() {
                 .directional_derivative(&unknowns, &[known], &[1.0])
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
             let differences = differences(&mut instance, &unknowns, known);
-            let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
+            let mut largest: BTreeMap<String, f64> = BTreeMap::new();
             for (place, exact) in exact.iter().enumerate() {
-                let largest = largest.entry(unit(&instance, place)).or_insert(1.0);
+                let largest = largest
+                    .entry(unit(&instance, place).to_string())
+                    .or_insert(1.0);
                 *largest = largest.max(exact.abs()).max(values[place].abs());
             }
             for (place, (exact, difference)) in exact.iter().zip(differences).enumerate() {
                 assert!(
-                    (exact - difference).abs() <= DIFFERENCE * largest[unit(&instance, place)],
+                    (exact - difference).abs() <= DIFFERENCE * largest[&*unit(&instance, place)],
                     "{name}: `{}` by `{}`: {exact} and {difference}",
                     instance.variables()[unknowns[place] as usize].name,
                     instance.variables()[known as usize].name,

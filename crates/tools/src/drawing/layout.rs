@@ -218,8 +218,8 @@ fn round_length(longest: f64, unit: Option<DisplayUnit>) -> (f64, String) {
     // Otherwise millimetres below a metre, as on drawings.
     let (name, shift) = match unit {
         Some(unit) => (unit.name, 0.0),
-        None if exponent < 0.0 => ("mm", 3.0),
-        None => ("m", 0.0),
+        None if exponent < 0.0 => (DisplayUnit::MILLIMETRE.name, 3.0),
+        None => (DisplayUnit::METRE.name, 0.0),
     };
     let value = digit * 10_f64.powf(exponent + shift);
     let decimals = (-(exponent + shift)).max(0.0) as usize;

@@ -78,13 +78,13 @@ fn units<'a, Q: 'a>(
     prefix: &str,
     indent: &str,
 ) -> String {
-    let mut known: BTreeMap<&str, Unit> = BTreeMap::new();
+    let mut known: BTreeMap<String, Unit> = BTreeMap::new();
     for variable in variables {
         if let Kind::Real {
             unit: Some(unit), ..
         } = variable.kind
         {
-            known.insert(unit.name, unit);
+            known.insert(unit.name.to_string(), unit);
         }
     }
     if known.is_empty() {

@@ -75,7 +75,7 @@ impl Session {
         if energies.is_some() {
             variables.push(json!({
                 "name": "energy.total",
-                "unit": Unit::JOULE.name,
+                "unit": Unit::JOULE.name.as_str(),
                 "factor": 1.0,
                 "is_told": false,
             }));
@@ -97,7 +97,7 @@ impl Session {
             json!({
                 "name": input.name,
                 "description": input.description,
-                "unit": input.unit.map_or("", |unit| unit.name),
+                "unit": input.unit.map_or_else(String::new, |unit| unit.name.to_string()),
                 "factor": 1.0,
                 "value": load,
                 "largest": largest,

@@ -14,12 +14,12 @@ pub(super) fn is_told(output: &Output) -> bool {
 }
 
 /// Returns the name of the unit in which values of a unit are shown, and its factor from SI.
-pub(super) fn shown_in(unit: Unit, length: Option<DisplayUnit>) -> (&'static str, f64) {
+pub(super) fn shown_in(unit: Unit, length: Option<DisplayUnit>) -> (String, f64) {
     let own = unit.display;
     let display = own.or_else(|| length.filter(|l| l.dimension == unit.dimension));
     match display {
-        Some(display) => (display.name, display.factor),
-        None if unit == Unit::ONE => ("", 1.0),
-        None => (unit.name, 1.0),
+        Some(display) => (display.name.to_string(), display.factor),
+        None if unit == Unit::ONE => (String::new(), 1.0),
+        None => (unit.name.to_string(), 1.0),
     }
 }

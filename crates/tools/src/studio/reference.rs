@@ -37,6 +37,8 @@ pub(super) struct Reference {
     pub(super) path: Vec<String>,
     /// Names joined by points, such as `crank.A`.
     pub(super) name: String,
+    /// Length of the part of the name that is not written: shapes name markers of their body alone.
+    pub(super) implied: usize,
     pub(super) place: Range<usize>,
     /// Place of the whole text with its quotes, if it is nothing but the name.
     pub(super) alone: Option<Range<usize>>,
@@ -69,9 +71,12 @@ pub(super) fn references(text: &TomlText) -> Vec<Reference> {
             let is_alone = inside.trim() == &inside[name.clone()];
             let name = inside[name].to_owned();
             let is_variable = variable(&found.path) == Some(&*name);
+            let owner = owner_of_markers(&found.path);
+            let implied = owner.map_or_else(String::new, |owner| format!("{owner}."));
             (!is_variable).then(|| Reference {
                 path: found.path.clone(),
-                name,
+                implied: implied.len(),
+                name: implied + &name,
                 place,
                 alone: is_alone.then(|| found.place.clone()),
             })
@@ -89,10 +94,25 @@ fn is_word(found: &WrittenText, text: &str) -> bool {
         ["joints", _, "law"] => false,
         [.., "phase"] => &text[found.inside.clone()] == "drawn",
         // Markers and parameters may have any of these names.
-        ["bodies", _, "markers", ..] | ["ground", ..] | ["parameters", _] => false,
+        ["bodies", _, "markers", ..] | ["ground", "markers", ..] | ["parameters", _] => false,
         [.., key] => WORDS.contains(&key),
         [] => true,
     }
+}
+
+/// Returns the body, or ground, whose markers a text at a path names alone: the corners of a shape.
+fn owner_of_markers(path: &[String]) -> Option<&str> {
+    let path: Vec<&str> = path.iter().map(String::as_str).collect();
+    let (owner, rest) = match path[..] {
+        ["ground", "shapes", _, ref rest @ ..] => ("ground", rest),
+        ["bodies", body, "shapes", _, ref rest @ ..] => (body, rest),
+        _ => return None,
+    };
+    let is_corner = matches!(
+        rest,
+        ["disc" | "bar" | "outline" | "hole" | "wall"] | ["outline", "marker"]
+    );
+    is_corner.then_some(owner)
 }
 
 /// Returns the variable of the expression at a path, which is no name of the file.

@@ -5,11 +5,11 @@ use biela::mechanism::{Coordinate, Load, Mechanism};
 
 /// Returns the unit of the number at a path, or of an element of the list there; nothing where it has
 /// none, or none that is known.
-pub(super) fn unit_of(
-    drawn: &Drawn,
+pub(super) fn unit_of<'a>(
+    drawn: &'a Drawn,
     path: &[&str],
     element: Option<usize>,
-) -> Option<&'static str> {
+) -> Option<&'a str> {
     let mechanism = drawn.mechanism.as_deref();
     let pose = |element| if element == Some(2) { "rad" } else { "m" };
     Some(match path[..] {
@@ -31,7 +31,11 @@ pub(super) fn unit_of(
         ["parameters", name] | ["parameters", name, "value" | "min" | "max" | "tolerance"] => {
             let mechanism = mechanism?;
             let id = mechanism.parameter_id(name)?;
-            mechanism.parameters[id.index()].unit?.name
+            mechanism.parameters[id.index()]
+                .unit
+                .as_ref()?
+                .name
+                .as_str()
         }
         ["forces", name, key] => {
             let forces = &mechanism?.forces;

@@ -231,7 +231,7 @@ fn forces(input: &Input, solver: &mut Solver) -> Result<String, Error> {
     let values = forces
         .values
         .iter()
-        .map(|(name, value, unit)| [name.clone(), shown(*value), (*unit).to_owned()]);
+        .map(|(name, value, unit)| [name.clone(), shown(*value), unit.to_string()]);
     Ok(format!(
         "<h2>Forces at rest</h2>\n{masses}\n{}",
         table(&["Force", "Value", "Unit"], values)

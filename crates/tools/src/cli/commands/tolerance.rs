@@ -16,7 +16,7 @@ use crate::cli::results::output::print;
 use crate::cli::told::error::Error;
 use biela::dynamics::Motion;
 use biela::kinematics::Direction;
-use biela::mechanism::{Mechanism, Order, ParameterId, Signal, Unit};
+use biela::mechanism::{DisplayUnit, Mechanism, Order, ParameterId, Signal, Unit, UnitName};
 
 /// Tell how tolerances of parameters change the motion.
 ///
@@ -192,10 +192,10 @@ fn table(
 
 /// Returns the factor and the name of the unit that deviations are shown in: millimetres for
 /// lengths.
-fn shown_in(unit: Unit) -> (f64, &'static str) {
+fn shown_in(unit: Unit) -> (f64, UnitName) {
     match unit.display {
         Some(display) => (display.factor, display.name),
-        None if unit == Unit::METRE => (1e3, "mm"),
+        None if unit == Unit::METRE => (1e3, DisplayUnit::MILLIMETRE.name),
         None => (1.0, unit.name),
     }
 }

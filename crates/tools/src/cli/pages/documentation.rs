@@ -554,7 +554,7 @@ fn row(variable: &Variable<Quantity>) -> [String; 4] {
 }
 
 fn name_of(unit: Option<Unit>) -> String {
-    unit.map_or_else(String::new, |unit| unit.name.to_owned())
+    unit.map_or_else(String::new, |unit| unit.name.to_string())
 }
 
 /// Returns a table; a word if it has no rows.

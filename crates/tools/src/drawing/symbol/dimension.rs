@@ -55,7 +55,7 @@ pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> 
         return Vec::new();
     }
     composer.symbols.extend(lengths.into_iter().map(Into::into));
-    vec![format!("lengths in {}", unit.map_or("m", |unit| unit.name))]
+    vec![format!("lengths in {}", unit.unwrap_or(DisplayUnit::METRE).name)]
 }
 
 /// Returns the distance of a guide's line, `aside` of its x-axis, from the nearest joint of its body,

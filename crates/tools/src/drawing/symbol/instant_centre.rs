@@ -49,7 +49,7 @@ pub(in crate::drawing) fn compose(
         };
         let point = Point::from(at);
         if low.inf(&point) != low || high.sup(&point) != high {
-            let (factor, unit) = unit.map_or((1.0, "m"), |unit| (unit.factor, unit.name));
+            let (factor, unit) = unit.map_or((1.0, DisplayUnit::METRE.name), |unit| (unit.factor, unit.name));
             let [x, y] = at.map(|value| shown(rounded(value * factor, 5)));
             notes.push(format!(
                 "instant centre of {name} outside the picture, at ({x}, {y}) {unit}"

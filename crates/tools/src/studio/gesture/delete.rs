@@ -63,6 +63,14 @@ fn delete_faulty(editing: &mut Editing) -> Result<bool, Refusal> {
                     let index = elements.take_while(|place| place.end <= at).count();
                     faulty.insert((vec!["outputs".to_owned(), list.to_owned()], Some(index)));
                 }
+                ["bodies", _, "shapes", _, ..] => {
+                    let shape = path[..4].iter().map(|&part| part.to_owned());
+                    faulty.insert((shape.collect(), None));
+                }
+                ["ground", "shapes", _, ..] => {
+                    let shape = path[..3].iter().map(|&part| part.to_owned());
+                    faulty.insert((shape.collect(), None));
+                }
                 [section, name, ..] if named().any(|known| known == section) => {
                     faulty.insert((vec![section.to_owned(), name.to_owned()], None));
                 }

@@ -93,9 +93,9 @@ fn renamed(text: &mut TomlText, path: &[&str], old: &str, new: &str) {
     let length = old.len() - old.rfind('.').map_or(0, |at| at + 1);
     let named = references(text)
         .into_iter()
-        .filter(|found| found.is_of(old));
+        .filter(|found| found.is_of(old) && found.implied < old.len());
     let named = named.map(|found| {
-        let end = found.place.start + old.len();
+        let end = found.place.start + old.len() - found.implied;
         (end - length..end, new.to_owned())
     });
     let mut parts: Vec<(Range<usize>, String)> = own.chain(named).collect();

@@ -95,6 +95,9 @@ fn title(editing: &Editing, names: &[&str]) -> Result<(String, &'static str), Re
         Some("measures") => ("Measure", "measure"),
         Some("forces") => ("Force", "force"),
         Some("stops") => ("Stop", "stop"),
+        Some("contacts") => ("Contact", "contact"),
+        Some("functions") => ("Function", "function"),
+        Some("inputs") => ("Input", "input"),
         Some("friction") => ("Friction", "friction"),
         _ => return Err(format!("there is nothing called `{name}`").into()),
     };

@@ -126,9 +126,9 @@ fn faults_of_a_file_of_values_are_named_with_their_line() {
             "the times are in `ms`; expected `s`",
         ),
         (
-            "time,side_length [inch]\n0,0.3\n",
+            "time,side_length [parsec]\n0,0.3\n",
             &[],
-            "column `side_length` is in `inch`; expected `m` or `mm` or `cm`",
+            "column `side_length` is in `parsec`; expected `m` or `mm` or `cm`",
         ),
         (
             "time,side_length\ns,kg\n0,0.3\n",

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use biela::kinematics::{Error, ForceQuantity, Output, OutputSource, Solution, Solver};
-use biela::mechanism::{BodyId, DriverId, Indeterminate, Jet, Mechanism, Unit, shown};
+use biela::mechanism::{BodyId, DriverId, Indeterminate, Jet, Mechanism, Unit, UnitName, shown};
 
 /// Magnitude below which a force of a few newtons is rounding.
 const NO_FORCE: f64 = 1e-12;
@@ -14,7 +14,7 @@ pub(in crate::cli) struct Forces {
     /// Name, mass \[kg\] and inertia \[kg m²\] of each body with mass.
     pub(in crate::cli) masses: Vec<(String, f64, f64)>,
     /// Name, value and unit of each output, those that are zero or trivial at rest left out.
-    pub(in crate::cli) values: Vec<(String, f64, &'static str)>,
+    pub(in crate::cli) values: Vec<(String, f64, UnitName)>,
     /// Joints and constraints with indeterminate reactions.
     pub(super) indeterminate: Vec<String>,
     /// Efforts of drivers against friction.

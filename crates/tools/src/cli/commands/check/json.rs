@@ -123,7 +123,7 @@ fn describe(mechanism: &Arc<Mechanism>) -> Value {
         json!({
             "name": driver.name,
             "input": matches!(driver.source, DriverSource::Input { .. }),
-            "unit": driver.coordinate.kind.unit().name,
+            "unit": driver.coordinate.kind.unit().name.as_str(),
         })
     });
     json!({
@@ -178,7 +178,7 @@ fn assembled(
             json!({
                 "name": measure.name,
                 "value": solver.measure(index, &still).value,
-                "unit": measure.coordinate.kind.unit().name,
+                "unit": measure.coordinate.kind.unit().name.as_str(),
             })
         });
     let (misfits, drawn) = (solver.geometry_warnings(), solver.drawn_apart());
@@ -190,7 +190,7 @@ fn assembled(
         "drivers": drivers.map(|(driver, value)| json!({
             "name": driver.name,
             "value": value,
-            "unit": driver.coordinate.kind.unit().name,
+            "unit": driver.coordinate.kind.unit().name.as_str(),
         })).collect::<Vec<_>>(),
         "bodies": poses(mechanism, &pose.q),
         "measures": measures.collect::<Vec<_>>(),
@@ -209,8 +209,9 @@ fn assembled(
     if mechanism.has_dynamics() {
         let forces = Forces::at_rest(&mut solver)?;
         let values = forces.values.iter();
-        let values =
-            values.map(|(name, value, unit)| json!({ "name": name, "value": value, "unit": unit }));
+        let values = values.map(
+            |(name, value, unit)| json!({ "name": name, "value": value, "unit": unit.as_str() }),
+        );
         found["forces"] = values.collect();
         found["indeterminate"] = json!(forces.indeterminate);
         let slow = forces.slow.iter().map(|slow| {

@@ -282,7 +282,7 @@ impl<'a> Column<'a> {
             return Ok(());
         }
         let others = || self.unit.display_units();
-        let factor = if symbol == self.unit.name {
+        let factor = if self.unit.name == symbol {
             Some(1.0)
         } else {
             let unit = DisplayUnit::read(symbol).ok();
@@ -347,7 +347,7 @@ fn is_time(name: &str) -> bool {
 }
 
 fn check_time_unit(unit: &str) -> Result<(), String> {
-    if matches!(unit, "" | "-") || unit == Unit::SECOND.name {
+    if matches!(unit, "" | "-") || Unit::SECOND.name == unit {
         return Ok(());
     }
     Err(format!(
