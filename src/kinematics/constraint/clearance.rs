@@ -473,7 +473,7 @@ impl Constraint for Clearance {
     }
 
     /// Returns no bound: another feature may become the nearest one. The watch over stops has
-    /// [`deviation`](Clearance::deviation), which holds for all features at once.
+    /// `deviation`, which holds for all features at once.
     fn bend(&self, _: &Configuration, _: &Region<'_>, _: &[f64], _: &mut Gradient) -> Option<f64> {
         None
     }
