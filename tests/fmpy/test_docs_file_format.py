@@ -61,8 +61,6 @@ WORDS = {
     "side": "[joints.S]\ntype = 'rack_and_pinion'\nside = 'none_such'",
     "side of a pulley": "[joints.P]\ntype = 'rope'\nmarkers = [{ side = 'none_such' }, 'g.O']",
     "treatment": "[outputs]\nindeterminate = 'none_such'",
-    "unit": "[parameters.u]\nvalue = 1\nunit = 'none_such'",
-    "display unit": "[parameters.v]\nvalue = 1\nunit = 'm'\ndisplay = 'none_such'",
 }
 """For each choice of words, by what the reader calls it, a place with a wrong one."""
 

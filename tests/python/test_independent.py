@@ -40,8 +40,16 @@ NEXT_TO_CHANGE_POINTS = {"four_bar_chain": 4}
 """Factors on the bounds of motions for mechanisms of which a pose is next to a change point, where
 polynomials give the outputs."""
 
-COMPUTED = {"toggle_press": {"advantage", "pin_force"}}
-"""Measures that the files compute from other variables, which are compared."""
+COMPUTED = {
+    "toggle_press": {"advantage", "pin_force"},
+    "gripper": {
+        f"{measure}.{order}"
+        for measure in ("air", "gap")
+        for order in ("position", "velocity", "acceleration")
+    },
+}
+"""Measures that the files compute from other variables, which are compared, and clearances of shapes, which
+closed forms are compared with in the gallery and in `tests/solver/contacts.rs`."""
 
 OTHER_JOINTS = """
     format = 1

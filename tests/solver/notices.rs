@@ -127,7 +127,7 @@ const TABLES: &str = r#"
     format = 1
     name = "tables"
     [functions]
-    push = { table = [[0.3, 0], [1, 0]], law = "linear", ends = "linear" }
+    push = { table = [[0.3, 0], [1, 0]], law = "linear" }
     drag = { of = ["v"], value = "0*slow(-v)" }
     slow = { table = [[0, 0], [1.5, 1]], law = "linear" }
     again = { table = [[0, 0], [0.1, 0]], law = "linear", ends = "periodic" }

@@ -31,6 +31,8 @@ pub struct Function {
     pub first_jump: Option<usize>,
     /// Whether it is made of pieces that may meet with a corner.
     pub has_pieces: bool,
+    /// Whether the file itself says what holds beyond its points: a call there is meant.
+    pub says_ends: bool,
 }
 
 /// An argument of a function on whose points the value, or its slope, jumps.
@@ -148,7 +150,7 @@ impl Function {
     }
 
     /// Returns the first argument beyond the points, by more than rounding, with the ends of these; `None`
-    /// for a formula, and where points repeat.
+    /// for a formula, where points repeat, and where the file says what holds beyond them.
     pub(super) fn beyond(
         &self,
         parameter: &dyn Fn(ParameterId) -> f64,
@@ -156,6 +158,9 @@ impl Function {
     ) -> Option<(f64, [f64; 2])> {
         /// Part of the range of a table within which an argument is at its end.
         const ROUNDING: f64 = 1e-9;
+        if self.says_ends {
+            return None;
+        }
         let ends = |axis: usize| match &self.body {
             FunctionBody::Points(points) => points.ends(&parameter),
             FunctionBody::Grid(grid) => {

@@ -242,6 +242,11 @@ impl<'a> Context<'a> {
                 parameters,
                 first_jump,
                 has_pieces,
+                says_ends: entry
+                    .value
+                    .get_ref()
+                    .as_table()
+                    .is_some_and(|keys| keys.contains_key("ends")),
             }
         });
         Draft {

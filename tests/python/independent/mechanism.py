@@ -18,9 +18,13 @@ from .frames import GROUND, Frame, Vector, frame
 
 
 def coordinates(file: dict) -> dict:
-    """Returns the entries that are coordinates with names: of drivers, freedoms and measures."""
+    """Returns the entries that are coordinates of markers with names: of drivers, freedoms and measures."""
     named = {**moving(file), **file.get("measures", {})}
-    return {name: entry for name, entry in named.items() if "coordinate" in entry}
+    return {
+        name: entry
+        for name, entry in named.items()
+        if entry.get("coordinate", "clearance") != "clearance"
+    }
 
 
 def moving(file: dict) -> dict:
