@@ -87,9 +87,9 @@ test("a header ends with its bracket, which may be there", () => {
   assert.equal(at("[ground.|]").accept("markers"), "[ground.markers]|");
 });
 
-test("a header of a body goes on to its markers", () => {
+test("a header of a body goes on to its markers and shapes", () => {
   assert.deepEqual(at("[bodies.crank]\nmass = 1\n[bodies.|").labels, ["crank."]);
-  assert.deepEqual(at("[bodies.crank]\nmass = 1\n[bodies.crank.|").labels, ["markers"]);
+  assert.deepEqual(at("[bodies.crank]\nmass = 1\n[bodies.crank.|").labels, ["markers", "shapes"]);
 });
 
 test("the type of a joint decides its keys", () => {
