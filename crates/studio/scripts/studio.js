@@ -152,7 +152,7 @@ class Studio {
     const text = file.text.replaceAll("\r\n", "\n");
     const answer = this.ask({ do: "begin", ...this.file, text, history: file.history, scale: this.sheet.scale });
     if (answer.refused) {
-      // What was shown stays; on a new page an empty sheet takes its place.
+      // The sheet stays as it was; on a new page it is an empty one.
       Object.assign(this, before);
       const shown = before.draft ? { ...this.file, text: this.text, history: this.history } : { name: "mechanism.toml", text: EMPTY };
       return before.draft ? this.ask({ do: "begin", ...shown }) : this.open(shown);
@@ -462,7 +462,7 @@ class Studio {
       if (writes) {
         await disk.write(this.fileText);
       } else {
-        // What was drawn goes on as a draft of its own.
+        // The drawing goes on as a draft of its own.
         const { history } = this;
         this.drafts.keep({ ...this.file, id: newId(), changed: true, text: this.fileText, history }, this.server);
         this.open({ ...file, id: disk.id });
@@ -1101,7 +1101,7 @@ async function firstFile(studio, given) {
       return { ...given.file, ...kept, id: studio.disk.id };
     }
     if (kept.text !== kept.disk) {
-      // What the file never got stays beside what another program has written.
+      // Changes that the file never got stay beside those of another program.
       drafts.keep({ ...kept, id: newId(), disk: undefined, changed: true }, studio.server);
       studio.say(`\`${given.file.name}\` was changed on the disk: what was drawn before is under Drafts`);
     }
