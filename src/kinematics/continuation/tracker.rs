@@ -245,24 +245,16 @@ impl Run<'_> {
     /// Returns whether only the blocks decide about a path: as long as one sub-step does, nothing else
     /// takes part.
     fn is_ordinary(&self) -> bool {
-        let Self {
-            state,
-            path,
-            compiled,
-            ..
-        } = self;
-        let mut paths = path.driver_paths.iter();
-        state.regularity >= NEAR
+        self.state.regularity >= NEAR
             && !self.is_watched
-            && state.pose.crossings.is_empty()
-            && compiled.redundant.is_empty()
+            && self.state.pose.crossings.is_empty()
+            && self.compiled.redundant.is_empty()
             && self.budget.left > 0
-            && paths.all(|path| matches!(path, DriverPath::Input { .. }))
-            && !path.moves_parameters()
+            && !self.path.moves_parameters()
     }
 
-    /// Takes an ordinary path in one sub-step. Where it cannot, or comes near a singular position, it
-    /// returns false, and the mechanism is at the start of the path.
+    /// Takes an ordinary path, on which all drivers are inputs, in one sub-step. Where it cannot, or comes
+    /// near a singular position, it returns false, and the mechanism is at the start of the path.
     fn take_at_once(&mut self) -> bool {
         if self.state.refresh(self.compiled).is_err() {
             return false;
