@@ -104,6 +104,26 @@ def test_keys_after_windows_names_and_text(sheet):
     assert sheet.page.locator("dialog").count() == 0
 
 
+@pytest.mark.smoke
+def test_a_key_right_after_a_window_or_a_menu_is_for_the_sheet(sheet):
+    """The key comes before the browser draws again, as on a machine that is busy."""
+    click_and_press = """([selector, init]) => {
+      [...document.querySelectorAll(selector)][0].click();
+      document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { bubbles: true, cancelable: true, ...init }));
+    }"""
+    pressed = sheet.page.locator(".tools button[aria-pressed=true]")
+    sheet.page.locator("button.help").click()
+    sheet.page.evaluate(click_and_press, ["dialog button", {"key": "l"}])
+    assert pressed.get_attribute("value") == "link"
+    sheet.page.locator(".file-menu").click()
+    sheet.page.evaluate(click_and_press, [".menu button", {"key": "c"}])
+    assert pressed.get_attribute("value") == "cylinder"
+    sheet.page.locator("button.export").click()
+    with sheet.page.expect_download() as saved:
+        sheet.page.evaluate(click_and_press, ["dialog button[value='']", {"key": "s", "ctrlKey": True}])
+    assert saved.value.suggested_filename == "mechanism.toml"
+
+
 def test_a_mac_has_cmd_and_ctrl_clicks(sheet, chromium, folder, tmp_path):
     context = chromium.new_context(viewport={"width": 1440, "height": 900})
     context.add_init_script("Object.defineProperty(Navigator.prototype, 'platform', { get: () => 'MacIntel' })")

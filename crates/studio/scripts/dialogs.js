@@ -11,18 +11,30 @@ export function byKeys(text) {
   return isMac ? text.replaceAll("Ctrl", "Cmd") : text;
 }
 
-/** Opens a window with a title; `fill` fills its form. Returns the value of the button, "" for none. */
+/**
+ * Opens a window with a title; `fill` fills its form, and may close it with a value. Returns that value, or
+ * the one of the button, "" for none.
+ */
 export function openWindow(root, title, fill) {
   return new Promise((done) => {
     const dialog = add(root, "dialog", { className: "window" });
     const form = add(dialog, "form", { method: "dialog" });
     add(form, "h2", { textContent: title });
-    fill(form, dialog);
-    dialog.addEventListener("close", () => {
+    // The event `close` comes in a later task; a key before it would find the window's button, and be lost.
+    const close = (value) => {
+      dialog.close();
       dialog.remove();
-      done(dialog.returnValue);
+      done(value);
+    };
+    fill(form, close);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      close(/** @type {any} */ (event.submitter)?.value ?? "");
     });
-    dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
+    for (const kind of ["cancel", "close"]) {
+      dialog.addEventListener(kind, () => close(""));
+    }
+    dialog.addEventListener("click", (event) => event.target === dialog && close(""));
     dialog.showModal();
   });
 }
@@ -30,9 +42,11 @@ export function openWindow(root, title, fill) {
 /** Adds a row of buttons: pairs of text and value; the first one is the usual one. */
 export function buttonRow(form, ...pairs) {
   const row = add(form, "p", { className: "buttons" });
-  pairs.forEach(([textContent, value], index) =>
-    add(row, "button", { type: "submit", value, textContent, className: index === 0 && (value || pairs.length > 1) ? "primary" : "" }),
-  );
+  pairs.forEach(([textContent, value], index) => {
+    const className = index === 0 && (value || pairs.length > 1) ? "primary" : "";
+    // Giving up needs no valid field.
+    add(row, "button", { type: "submit", value, textContent, className, formNoValidate: value === "" });
+  });
   return row;
 }
 
@@ -90,9 +104,7 @@ export async function askName(root, title, name) {
     const label = add(form, "label", { textContent: "Name " });
     field = add(label, "input", { type: "text", value: name, pattern: "[A-Za-z][A-Za-z0-9_]*", required: true, autocomplete: "off", spellcheck: false });
     add(form, "p", { className: "note", textContent: "A letter, then letters, digits and _." });
-    buttonRow(form, ["Set", "set"]);
-    const cancel = add(form.lastChild, "button", { type: "button", textContent: "Cancel" });
-    cancel.addEventListener("click", () => form.parentElement.close());
+    buttonRow(form, ["Set", "set"], ["Cancel", ""]);
     setTimeout(() => field.select());
   });
   return answer === "set" ? field.value : "";
@@ -150,11 +162,16 @@ export class Menu {
     } else if (event.key === "Escape") {
       event.stopPropagation();
       this.close();
-      this.back?.focus?.();
     }
   }
 
   close() {
+    const { activeElement } = document;
     this.place.hidden = true;
+    // The next key is for what had the keys before, at once.
+    if (this.place.contains(activeElement)) {
+      activeElement.blur();
+      this.back?.focus?.();
+    }
   }
 }

@@ -496,7 +496,7 @@ class Studio {
 
   /** Opens one of the drafts. */
   async chooseDraft() {
-    const id = await openWindow(this.root, "Drafts", (form, dialog) => {
+    const id = await openWindow(this.root, "Drafts", (form, close) => {
       const list = add(form, "div", { className: "templates" });
       const shown = this.drafts.all();
       for (const draft of shown) {
@@ -505,7 +505,7 @@ class Studio {
         add(button, "div", { className: "picture" });
         add(button, "strong", { textContent: nameIn(draft.text) });
         add(button, "span", { textContent: `${new Date(draft.at).toLocaleString()}${draft.disk === undefined ? "" : `, ${draft.name}`}` });
-        button.addEventListener("click", () => dialog.close(draft.id));
+        button.addEventListener("click", () => close(draft.id));
         if (draft.id !== this.draft.id) {
           const gone = add(entry, "button", { type: "button", className: "remove", textContent: "Remove" });
           gone.setAttribute("aria-label", `Remove ${nameIn(draft.text)}`);
@@ -913,14 +913,14 @@ class Studio {
   }
 
   async chooseTemplate() {
-    const name = await openWindow(this.root, "Templates", (form, dialog) => {
+    const name = await openWindow(this.root, "Templates", (form, close) => {
       const list = add(form, "div", { className: "templates" });
       for (const template of this.templates) {
         const button = add(list, "button", { type: "button" });
         add(button, "div", { className: "picture" });
         add(button, "strong", { textContent: template.name });
         add(button, "span", { textContent: template.description });
-        button.addEventListener("click", () => dialog.close(template.name));
+        button.addEventListener("click", () => close(template.name));
       }
       buttonRow(form, ["Cancel", ""]);
       this.pictureAll(list, this.templates);
