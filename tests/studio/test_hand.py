@@ -108,7 +108,7 @@ def test_keys_after_windows_names_and_text(sheet):
 def test_a_key_right_after_a_window_or_a_menu_is_for_the_sheet(sheet):
     """The key comes before the browser draws again, as on a machine that is busy."""
     click_and_press = """([selector, init]) => {
-      [...document.querySelectorAll(selector)][0].click();
+      document.querySelector(selector).click();
       document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { bubbles: true, cancelable: true, ...init }));
     }"""
     pressed = sheet.page.locator(".tools button[aria-pressed=true]")

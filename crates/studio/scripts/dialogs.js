@@ -18,7 +18,7 @@ export function byKeys(text) {
 export function openWindow(root, title, fill) {
   return new Promise((done) => {
     const dialog = add(root, "dialog", { className: "window" });
-    const form = add(dialog, "form", { method: "dialog" });
+    const form = add(dialog, "form");
     add(form, "h2", { textContent: title });
     // The event `close` comes in a later task; a key before it would find the window's button, and be lost.
     const close = (value) => {
