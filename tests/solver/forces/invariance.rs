@@ -6,7 +6,7 @@ use std::sync::Arc;
 use biela::kinematics::{DriverPath, ForceParts, ForceQuantity, KnownMotion, Origin, Path, Solver};
 use biela::mechanism::{
     CoordinateKind, DriverId, DriverSource, Expression, ForceLaw, Jet, JointKind, Load, Marker,
-    MarkerId, Mechanism,
+    MarkerId, Mechanism, ShapeForm,
 };
 use nalgebra::{Rotation2, Vector2};
 use proptest::prelude::*;
@@ -483,6 +483,23 @@ fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
             }
             JointKind::Revolute | JointKind::Translational | JointKind::Slot | JointKind::Weld => {}
         }
+    }
+    for shape in &mut mechanism.shapes {
+        match &mut shape.form {
+            ShapeForm::Disc { radius, .. }
+            | ShapeForm::Bar { radius, .. }
+            | ShapeForm::Hole { radius, .. }
+            | ShapeForm::Wall { depth: radius, .. } => times(radius, length),
+            ShapeForm::Outline { radius, fillet, .. } => {
+                let sizes = [radius, fillet].into_iter().flatten();
+                sizes.for_each(|size| times(size, length));
+            }
+        }
+    }
+    for stop in &mut mechanism.stops {
+        let factor = scale.coordinate(stop.coordinate.kind);
+        let limits = [&mut stop.min, &mut stop.max].into_iter().flatten();
+        limits.for_each(|limit| times(limit, factor));
     }
     for held in &mut mechanism.constraints {
         times(&mut held.value, scale.coordinate(held.coordinate.kind));
