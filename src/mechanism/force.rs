@@ -91,8 +91,14 @@ impl PassiveCause {
                 let [dry, sticking] = [law.coulomb.value(parameters), law.sticking(&value)];
                 let mut sizes = law.expressions().map(|size| size.value(parameters));
                 let is_possible = sizes.all(|size| size >= 0.0) && sticking >= dry;
-                (!is_possible)
-                    .then_some("has a negative number, or sticks with less than it slides")
+                let mut exponent = law.exponent.iter();
+                if !is_possible {
+                    Some("has a negative number, or sticks with less than it slides")
+                } else if exponent.all(|exponent| exponent.value(parameters) >= 1.0) {
+                    None
+                } else {
+                    Some("has an `exponent` below 1")
+                }
             }
         }
     }

@@ -15,6 +15,9 @@ pub struct FrictionLaw {
     /// Stribeck's speed \[m/s or rad/s\]: about so fast, the force has fallen from that of sticking
     /// to Coulomb's. `None` if it falls at once.
     pub stribeck: Option<Expression>,
+    /// Stribeck's exponent \[1\], at least 1: below, the force would fall with an infinite slope as
+    /// sliding begins. `None` for 2.
+    pub exponent: Option<Expression>,
     /// Coefficient of the part that grows with the speed \[N s/m or N m s/rad\].
     pub viscous: Option<Expression>,
     /// The joint that presses the two sides on each other, `None` for friction of a given force.
@@ -87,15 +90,19 @@ impl FrictionLaw {
     }
 
     /// Returns the part of the force that does not grow with the rate of the coordinate:
-    /// C + (S − C) exp(−(ċ / v)²), with C of Coulomb, S of sticking and v of Stribeck.
+    /// C + (S − C) exp(−|ċ / v|ⁿ), with C of Coulomb, S of sticking, v and n of Stribeck.
     pub fn dry<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, rate: N) -> N {
         let value = |expression: &Expression| expression.evaluate(parameter, N::constant(0.0));
         let coulomb = value(&self.coulomb);
         let Some(stribeck) = &self.stribeck else {
             return coulomb;
         };
-        let part = (-(rate / value(stribeck)).square()).exp();
-        coulomb + (self.sticking(parameter) - coulomb) * part
+        let ratio = rate / value(stribeck);
+        let power = match &self.exponent {
+            None => ratio.square(),
+            Some(exponent) => ratio.abs().powf(value(exponent)),
+        };
+        coulomb + (self.sticking(parameter) - coulomb) * (-power).exp()
     }
 
     /// Returns the coefficient of viscous friction.
@@ -120,7 +127,13 @@ impl FrictionLaw {
                 BearingShape::Pin { radius } => Some(radius),
                 BearingShape::Guide { length } => length.as_ref(),
             });
-        let others = [&self.sticking, &self.stribeck, &self.viscous].map(Option::as_ref);
+        let others = [
+            &self.sticking,
+            &self.stribeck,
+            &self.viscous,
+            &self.exponent,
+        ];
+        let others = others.map(Option::as_ref);
         let others = others.into_iter().chain([of_bearing]);
         [&self.coulomb].into_iter().chain(others.flatten())
     }

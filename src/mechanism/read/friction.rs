@@ -25,6 +25,8 @@ table! {
         /// Speed of Stribeck [m/s or rad/s]: about so fast, the force has fallen to that of Coulomb. If
         /// left out it falls at once.
         stribeck: Quantity = NUMBER.positive(),
+        /// Exponent of Stribeck, at least 1; 2 if left out.
+        exponent: Quantity = RATIO.positive(),
         /// Coefficient of viscous friction [N.s/m or N.m.s/rad].
         viscous: Quantity = NUMBER.not_negative(),
         /// Speed from which most of the force acts [m/s or rad/s]: slower, it falls to zero, and nothing
@@ -49,6 +51,8 @@ table! {
         /// Speed of Stribeck [m/s or rad/s]: about so fast, the coefficient has fallen from `static` to
         /// `coefficient`. If left out it falls at once.
         stribeck: Quantity = NUMBER.positive(),
+        /// Exponent of Stribeck, at least 1; 2 if left out.
+        exponent: Quantity = RATIO.positive(),
         /// Coefficient of viscous friction [N.s/m or N.m.s/rad].
         viscous: Quantity = NUMBER.not_negative(),
         /// Radius of the pin of a revolute joint.
@@ -88,7 +92,7 @@ impl<'a> Context<'a> {
             &keys.owner,
             force,
             keys.r#static,
-            keys.stribeck,
+            [keys.stribeck, keys.exponent],
             keys.viscous,
         );
         let (coordinate, law) = (coordinate?, law?);
@@ -139,7 +143,7 @@ impl<'a> Context<'a> {
             &keys.owner,
             coefficient,
             keys.r#static,
-            keys.stribeck,
+            [keys.stribeck, keys.exponent],
             keys.viscous,
         );
         let index = keys.joint.value?;
@@ -209,7 +213,7 @@ impl<'a> Context<'a> {
         owner: &Fields<'a>,
         (key, sliding): (&str, Field<Quantity>),
         sticking: Field<Quantity>,
-        stribeck: Field<Quantity>,
+        [stribeck, exponent]: [Field<Quantity>; 2],
         viscous: Field<Quantity>,
     ) -> Option<FrictionLaw> {
         if let (Some(sliding), Some(most)) = (sliding.number(), sticking.number())
@@ -224,10 +228,20 @@ impl<'a> Context<'a> {
             self.error(code::UNKNOWN_KEY, span.clone(), message)
                 .suggest(format!("friction falls from `static` to `{key}`"));
         }
+        if let (Some(span), None) = (&exponent.key, &stribeck.key) {
+            let message = format!("{} has `exponent`, but no `stribeck`", owner.subject);
+            self.error(code::UNKNOWN_KEY, span.clone(), message)
+                .suggest("`exponent` tells how friction falls over the speed `stribeck`");
+        } else if exponent.number().is_some_and(|n| n > 0.0 && n < 1.0) {
+            let message = format!("{} has an `exponent` below 1", owner.subject);
+            self.error(code::OUT_OF_RANGE, exponent.span.clone(), message)
+                .suggest("below 1 friction would fall infinitely steeply as sliding begins");
+        }
         Some(FrictionLaw {
             coulomb: sliding.expression()?,
             sticking: sticking.optional()?.map(|q| q.expression),
             stribeck: stribeck.optional()?.map(|q| q.expression),
+            exponent: exponent.optional()?.map(|q| q.expression),
             viscous: viscous.optional()?.map(|q| q.expression),
             bearing: None,
         })

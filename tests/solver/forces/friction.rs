@@ -77,6 +77,42 @@ fn the_effort_changes_with_velocity_and_parameter() {
     assert!(OutputSource::Force(EFFORT).uses_forces(&mechanism));
 }
 
+/// With an exponent n the force falls as exp(−|v / v_s|ⁿ): the effort, and its changes with the velocity
+/// and with n, at speeds of both directions. At n = 1 the slope at rest is finite from each side.
+#[test]
+fn friction_falls_by_its_exponent() {
+    let text = SLIDER
+        .replace("coulomb = 3", "coulomb = 3\nn = 1")
+        .replace("stribeck = 0.1", "stribeck = 0.1, exponent = \"n\"");
+    for exponent in [1.0, 1.37, 2.0, 5.0] {
+        let mechanism = parse(&text.replace("n = 1", &format!("n = {exponent}")));
+        let (mut solver, _) = assembled(&mechanism);
+        let mut solution = Solution::new(&solver);
+        solution.seek_forces(&solver);
+        for velocity in [-0.17_f64, 1e-9, 0.08] {
+            solution.driver_rates[0].derivatives = [velocity, 0.0];
+            solution.solve(&mut solver).expect("it is regular");
+            let (sign, ratio) = (velocity.signum(), velocity.abs() / 0.1);
+            let power = ratio.powf(exponent);
+            let wanted = sign * (3.0 + (-power).exp()) + 5.0 * velocity;
+            assert!((solution.force(EFFORT) - wanted).abs() < 1e-14);
+            let mut by_velocity = Direction::zero(&mechanism);
+            by_velocity.drivers[0].derivatives[0] = 1.0;
+            let id = mechanism.parameter_id("n").expect("it is there");
+            let by_exponent = Direction::by_parameter(&mechanism, id);
+            let slope = -exponent * ratio.powf(exponent - 1.0) / 0.1 * (-power).exp() + 5.0;
+            let bend = -sign * power * ratio.ln() * (-power).exp();
+            let stay = vec![0.0; solution.loads.len()];
+            for (direction, wanted) in [(by_velocity, slope), (by_exponent, bend)] {
+                let changes = solution.force_changes(&mut solver, &direction, &stay);
+                let changes = changes.expect("they exist").expect("forces are sought");
+                let change = changes.change(EFFORT).expect("it exists");
+                assert!((change - wanted).abs() < 1e-13, "{change} {wanted}");
+            }
+        }
+    }
+}
+
 /// Two arms on pins with friction and a third one that is held at an angle to the second: while the first
 /// turns, its pin alone rubs. The rate of the others is the rounding of two angular velocities.
 #[test]

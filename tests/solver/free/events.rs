@@ -220,6 +220,33 @@ rubber = { coordinate = "x", markers = ["belt.B", "block.C"], force = 2, static 
     assert_events(&events, &expected);
 }
 
+/// With Stribeck's exponent 1 a block slows down by m v′ = −C − D exp(−v / v_s): w = exp(v / v_s) falls
+/// linearly in itself, w′ = −(C w + D) / (m v_s), until it sticks at w = 1. Its way is an integral of
+/// v_s ln w, here by Simpson's rule, whose error is some 1e-14.
+#[test]
+fn a_block_slides_to_rest_by_stribecks_exponent() {
+    let text = slider(
+        0.0,
+        0.0,
+        1.0,
+        "[friction]\nrail = { of = \"way\", force = 3, static = 5, stribeck = 0.4, exponent = 1 }",
+    );
+    let (mass, coulomb, more, speed) = (2.0, 3.0, 2.0, 0.4_f64);
+    let (rest, rate) = (more / coulomb, coulomb / (mass * speed));
+    let begin = (1.0 / speed).exp() + rest;
+    let velocity = |time: f64| speed * (begin * (-rate * time).exp() - rest).ln();
+    let way = |time: f64| {
+        let half = 500;
+        let h = time / f64::from(2 * half);
+        let ends = velocity(0.0) + velocity(time);
+        let inner = (1..2 * half).map(|k| f64::from(2 + 2 * (k % 2)) * velocity(f64::from(k) * h));
+        h / 3.0 * (ends + inner.sum::<f64>())
+    };
+    let stop = (begin / (1.0 + rest)).ln() / rate;
+    check(&text, 0.2, &[], [way(0.2), velocity(0.2)]);
+    check(&text, 1.0, &[(stop, EventKind::Sticks)], [way(stop), 0.0]);
+}
+
 /// A ball bounces ever more often, and rests: instants are a geometric series.
 #[test]
 fn a_ball_comes_to_rest() {
@@ -482,16 +509,18 @@ fn impossible_numbers_are_named() {
         0.0,
         0.0,
         1.0,
-        "[parameters]\nmu = 1\ne = 0.5\n[stops]\nwall = { of = \"way\", max = 1, restitution = \"e\" }\n\
-         [friction]\nrail = { of = \"way\", force = \"mu\" }",
+        "[parameters]\nmu = 1\ne = 0.5\nn = 2\n[stops]\nwall = { of = \"way\", max = 1, restitution = \"e\" }\n\
+         [friction]\nrail = { of = \"way\", force = \"mu\", static = \"mu\", \
+         stribeck = 1, exponent = \"n\" }",
     );
     for (parameters, message) in [
         (
-            [-1.0, 0.5],
+            [-1.0, 0.5, 2.0],
             "force `rail` has a negative number, or sticks with less than it slides",
         ),
+        ([1.0, 0.5, 0.9], "force `rail` has an `exponent` below 1"),
         (
-            [1.0, 1.5],
+            [1.0, 1.5, 2.0],
             "force `wall` has a `restitution` that is not from 0 to 1",
         ),
     ] {

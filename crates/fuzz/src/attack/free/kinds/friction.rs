@@ -195,7 +195,9 @@ pub fn stick_slip(chance: &mut Chance, mut text: Text) -> Case {
     let more = format!(", stiffness = {stiffness:?}, free = 0");
     text.along("forces", "spring", "x", ["ground.G", "block.O"], &more);
     let stribeck = if has_stribeck {
-        format!(", stribeck = {:?}", log_between(chance, 0.01, 0.5))
+        let exponent = [2.0, chance.between(1.0, 4.0)][chance.below(2)];
+        let speed = log_between(chance, 0.01, 0.5);
+        format!(", stribeck = {speed:?}, exponent = {exponent:?}")
     } else {
         String::new()
     };
