@@ -235,6 +235,23 @@ impl ForceLaw {
     /// Returns the force f \[N or N m\] for a value and a rate of the coordinate; `other` gives the
     /// variables but these: time, inputs and signals. Allocates nothing.
     pub fn evaluate<N: Number>(
+    /// Returns whether it is that of a spring of free length zero and nothing else: along a distance c
+    /// its force −k c ∂c/∂q is one along x and one along y, which needs no direction where c = 0.
+    pub fn is_through_zero(&self, parameter: &impl Fn(ParameterId) -> f64) -> bool {
+        let Self {
+            value: None,
+            spring: Some(spring),
+            damping: None,
+            stop: None,
+            friction: None,
+            ..
+        } = self
+        else {
+            return false;
+        };
+        spring.free.evaluate(parameter, 0.0) == 0.0
+    }
+
         &self,
         parameter: &impl Fn(ParameterId) -> N,
         other: &impl Fn(Variable) -> N,

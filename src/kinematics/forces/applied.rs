@@ -171,14 +171,21 @@ pub(super) fn on_body(
     Some((marker.body?, about_origin(size, axis, marker.arm.into())))
 }
 
-/// Returns the rounding error of the distance of two markers: a smaller one has any direction.
-fn distance_rounding(coordinate: &Coordinate, at: &Configuration) -> f64 {
+/// Returns whether a force acts along the distance of two markers, which is below its rounding error: any
+/// direction is possible.
+pub(super) fn is_at_zero(load: &Load, at: &Configuration) -> bool {
     /// Roundings of a point: its body's origin and angle, which Newton–Raphson leaves with two or
     /// three, the sine and cosine, and the sum.
     const POINT_ROUNDINGS: f64 = 8.0;
-    let markers = [coordinate.from, coordinate.to].map(|marker| at.marker(marker));
-    let sizes = markers.map(|marker| marker.point.norm() + marker.arm.norm());
-    POINT_ROUNDINGS * f64::EPSILON * (sizes[0] + sizes[1])
+    let coordinate = load.coordinate().filter(|_| load.play().is_none());
+    let Some(Coordinate { from, to, .. }) =
+        coordinate.filter(|own| own.kind == CoordinateKind::Distance)
+    else {
+        return false;
+    };
+    let [from, to] = [*from, *to].map(|marker| at.marker(marker));
+    let size = [from, to].map(|marker| marker.point.norm() + marker.arm.norm());
+    (to.point - from.point).norm() <= POINT_ROUNDINGS * f64::EPSILON * (size[0] + size[1])
 }
 
 impl AppliedForces {
@@ -252,15 +259,11 @@ impl AppliedForces {
                 })
             };
             match (&applied.place, &definition.load) {
-                (
-                    Place::Coordinate(relation),
-                    Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. },
-                ) => {
+                (Place::Coordinate(relation), Load::Coordinate { .. } | Load::Passive { .. }) => {
                     let law = definition.load.law();
                     let value = relation.value(at);
-                    if coordinate.kind == CoordinateKind::Distance
-                        && definition.load.play().is_none()
-                        && value <= distance_rounding(coordinate, at)
+                    if is_at_zero(&definition.load, at)
+                        && !law.is_some_and(|law| law.is_through_zero(parameter))
                     {
                         return fault("has no direction: the distance of its markers is zero");
                     }

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::applied::{Circumstances, Place, about_origin};
+use super::applied::{Circumstances, Place, about_origin, is_at_zero};
 use super::inertial::Masses;
 use super::results::shares;
 use super::solve::{ForceParts, Forces, KnownMotion, Loads};
@@ -15,7 +15,7 @@ use crate::kinematics::analysis::{Direction, Sensitivity};
 use crate::kinematics::constraint::moving_configuration::{
     Bodies, CurvesAlong, Varied, VariedConfiguration, VariedMechanism,
 };
-use crate::kinematics::constraint::{Constraint, Gradient, partial};
+use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate, partial};
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
@@ -23,7 +23,8 @@ use crate::kinematics::singular::{Kind, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
 use crate::mechanism::{
-    BodyId, DriverId, Dual, ForceQuantity, Load, Mechanism, Number, ParameterId, Reported,
+    BodyId, Coordinate, CoordinateKind, DriverId, Dual, ForceQuantity, Load, Mechanism, Number,
+    ParameterId, Reported,
 };
 
 /// The derivatives of all forces along a direction.
@@ -463,6 +464,36 @@ impl Forces {
         let mut energy = zero;
         for (applied, definition) in self.applied.list.iter().zip(&self.mechanism.forces) {
             match (&applied.place, &definition.load) {
+                (
+                    Place::Coordinate(_),
+                    Load::Coordinate {
+                        coordinate,
+                        law: Some(law),
+                    },
+                ) if is_at_zero(&definition.load, &state.at) => {
+                    // A spring of free length zero, or else there is no force: ½ k c² = ½ k (x² + y²), and
+                    // its force is −k x ∂x/∂q − k y ∂y/∂q. The size k c has no derivative, and a free
+                    // length that changes leaves the force without direction.
+                    let spring = law.spring.as_ref().expect("it is through zero");
+                    let [stiffness, shortened] = spring.evaluate(&parameter, zero);
+                    let lost = if shortened.varies() {
+                        Dual::unknown()
+                    } else {
+                        zero
+                    };
+                    for kind in [CoordinateKind::X, CoordinateKind::Y] {
+                        let relation = of_coordinate(&Coordinate {
+                            kind,
+                            ..*coordinate
+                        });
+                        let value = relation.along(&at).value;
+                        for (column, partial) in probe.entries(&*relation, state) {
+                            demand[column] += (stiffness * value + lost) * partial;
+                        }
+                        energy += stiffness * value.square() * 0.5;
+                    }
+                    sizes.push([Dual::new(0.0, [f64::NAN]), zero, zero]);
+                }
                 (Place::Coordinate(relation), Load::Coordinate { .. } | Load::Passive { .. }) => {
                     let law = definition.load.law();
                     let value = relation.along(&at);

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use biela::kinematics::{Budget, Direction};
+use biela::kinematics::{Budget, Direction, Output};
 use biela::mechanism::{Mechanism, Source};
 
 use super::run::{Fed, Run, error};
@@ -466,6 +466,135 @@ fn changes_of_the_motion_agree_with_differences() {
         let difference = (after[k] - before[k]) / 2e-3;
         let exact = driver.value;
         assert!((difference - exact).abs() < 1e-7, "{exact} {difference}");
+    }
+}
+
+/// A mass in the plane on a spring of free length zero, k r in any direction.
+fn bound(start: [f64; 2], velocity: [f64; 2]) -> Arc<Mechanism> {
+    let ([x, y], [u, v]) = (start, velocity);
+    parse(&format!(
+        r#"
+format = 1
+name = "bound"
+[parameters]
+k = 18
+free = 0
+[ground.markers]
+G = [0.3, -0.2]
+[bodies.ball]
+mass = 2
+markers = {{ C = [0.1, 0.1] }}
+[constraints]
+level = {{ coordinate = "angle", markers = ["ground.G", "ball.C"], value = 0 }}
+[freedoms]
+x = {{ coordinate = "x", markers = ["ground.G", "ball.C"], start = {x}, velocity = {u} }}
+y = {{ coordinate = "y", markers = ["ground.G", "ball.C"], start = {y}, velocity = {v} }}
+[forces]
+pull = {{ coordinate = "distance", markers = ["ground.G", "ball.C"], stiffness = "k", free = "free" }}
+[simulation]
+gravity = [0, 0]
+"#
+    ))
+}
+
+/// A spring of free length zero swings a mass through its other end, from there, at rest there and round it:
+/// x = x₀ cos ωt + v₀/ω sin ωt along each axis.
+#[test]
+fn a_spring_of_free_length_zero_goes_through_zero() {
+    let omega = 3.0_f64;
+    for (start, velocity) in [
+        ([0.0, 0.0], [0.3, -0.4]),
+        ([0.0, 0.0], [0.0, 0.0]),
+        ([0.2, 0.0], [0.0, 0.0]),
+        ([0.2, 0.1], [0.3, -0.15]),
+    ] {
+        let mut run = Run::new(&bound(start, velocity), TOLERANCE, Fed::default());
+        for time in [0.4, std::f64::consts::FRAC_PI_6, 3.1, 10.0] {
+            run.to(time);
+            let (sine, cosine) = (omega * time).sin_cos();
+            let state = run.state();
+            for k in 0..2 {
+                let value = start[k] * cosine + velocity[k] / omega * sine;
+                let rate = velocity[k] * cosine - start[k] * omega * sine;
+                for (found, wanted) in [(state[k], value), (state[2 + k], rate)] {
+                    assert!((found - wanted).abs() < MARK, "{time} s: {found} {wanted}");
+                }
+            }
+        }
+        assert!(run.free.energy_error().abs() < 1e-9);
+    }
+}
+
+/// At zero the spring is linear in x and y, so that δẍ = −k/m δx exactly; its size, a cone, has no derivative,
+/// and a free length that changes leaves it none.
+#[test]
+fn a_spring_at_zero_has_the_derivatives_of_its_components() {
+    let mechanism = bound([0.0, 0.0], [0.0, 0.0]);
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    run.solution.seek_forces(&run.solver);
+    let mut linear = |outputs: &[Output]| {
+        let Run {
+            free,
+            solver,
+            solution,
+            ..
+        } = &mut run;
+        free.linearize(solver, solution, outputs)
+    };
+    let space = linear(&[]).expect("it is regular");
+    for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
+        let wanted = match (row, column) {
+            (0, 1) | (2, 3) => 1.0,
+            (1, 0) | (3, 2) => -9.0,
+            _ => 0.0,
+        };
+        let found = space.a[(row, column)];
+        assert!((found - wanted).abs() < 1e-14, "{row} {column}: {found}");
+    }
+    let size = Output::all(&mechanism);
+    let size = size
+        .into_iter()
+        .filter(|output| output.name == "pull.effort");
+    let size: Vec<_> = size.collect();
+    let refused = linear(&size).expect_err("a cone").to_string();
+    assert!(
+        refused.starts_with("force `pull` has no finite derivative"),
+        "{refused}"
+    );
+    let [by_stiffness, by_length] = [0, 1].map(|place| {
+        let mut direction = Direction::zero(&mechanism);
+        direction.parameters[place] = 1.0;
+        direction
+    });
+    let Run {
+        free,
+        solver,
+        solution,
+        ..
+    } = &mut run;
+    let completed = free.complete(solver, &solution.rates, &mut by_length.clone(), &mut []);
+    let refused = completed.expect_err("no direction").to_string();
+    assert!(
+        refused.starts_with("force `pull` has no finite derivative"),
+        "{refused}"
+    );
+    // The change of the motion with k, from the centre.
+    let (mut solver, _) = crate::common::assembled(&bound([0.0, 0.0], [0.3, -0.4]));
+    let free = biela::dynamics::FreeMotion::along(&solver, 1e-11, vec![by_stiffness]);
+    let mut free = free.expect("a tolerance").expect("freedoms");
+    let fed = Fed::default();
+    free.start(&mut solver, &fed).expect("it starts");
+    let mut run = Run::of(solver, free, fed);
+    let (time, omega) = (0.7, 3.0_f64);
+    run.to(time);
+    run.solution.seek_forces(&run.solver);
+    let varied = run.free.varied(&mut run.solver, &mut run.solution);
+    let varied = varied.expect("derivatives");
+    // ∂/∂ω of sin ωt / ω by dω/dk = 1 / (2 m ω).
+    let (sine, cosine) = (omega * time).sin_cos();
+    let change = (time * cosine - sine / omega) / omega / (4.0 * omega);
+    for (driver, velocity) in varied[0].drivers.iter().zip([0.3, -0.4]) {
+        assert!((driver.value - velocity * change).abs() < MARK);
     }
 }
 
