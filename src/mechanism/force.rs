@@ -110,6 +110,9 @@ impl PassiveCause {
 pub struct ForceLaw {
     /// Part that is a function of time, of c and its rate, and of what moves elsewhere \[N or N m\].
     pub value: Option<Expression>,
+    /// Whether that part is a number, the force of a spring of constant force: it has a potential,
+    /// −value · c.
+    pub is_constant: bool,
     /// Spring.
     pub spring: Option<Spring>,
     /// Coefficient of a damper \[N s/m or N m s/rad\].
@@ -232,9 +235,6 @@ impl Spring {
 }
 
 impl ForceLaw {
-    /// Returns the force f \[N or N m\] for a value and a rate of the coordinate; `other` gives the
-    /// variables but these: time, inputs and signals. Allocates nothing.
-    pub fn evaluate<N: Number>(
     /// Returns whether it is that of a spring of free length zero and nothing else: along a distance c
     /// its force −k c ∂c/∂q is one along x and one along y, which needs no direction where c = 0.
     pub fn is_through_zero(&self, parameter: &impl Fn(ParameterId) -> f64) -> bool {
@@ -252,6 +252,9 @@ impl ForceLaw {
         spring.free.evaluate(parameter, 0.0) == 0.0
     }
 
+    /// Returns the force f \[N or N m\] for a value and a rate of the coordinate; `other` gives the
+    /// variables but these: time, inputs and signals. Allocates nothing.
+    pub fn evaluate<N: Number>(
         &self,
         parameter: &impl Fn(ParameterId) -> N,
         other: &impl Fn(Variable) -> N,

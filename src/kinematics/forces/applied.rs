@@ -107,7 +107,7 @@ pub(super) enum Source {
 
 impl AppliedForce {
     /// Returns the size of a force along a coordinate with this value and rate, and the potential
-    /// energy of its spring.
+    /// energy of its springs.
     pub(super) fn along<N: Number, P: Fn(ParameterId) -> N>(
         &self,
         law: Option<&ForceLaw>,
@@ -124,6 +124,9 @@ impl AppliedForce {
             let [stiffness, extension] = spring.evaluate(around.parameter, coordinate[0]);
             stiffness * extension.square() * 0.5
         });
+        if let (true, Some(value)) = (law.is_constant, &law.value) {
+            energy -= value.evaluate(around.parameter, zero) * coordinate[0];
+        }
         if let Some(stop) = &law.stop {
             energy += stop.energy(around.parameter, coordinate[0]);
         }

@@ -11,7 +11,7 @@ use crate::mechanism::{
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
 use super::derived::Unread;
-use super::kind::{AnyOf, Array, Entry, Text};
+use super::kind::{AnyOf, Array, Entry, Flag, Text};
 use super::number::{NUMBER, Quantity};
 use super::reference::MarkerName;
 use super::table::{Field, table};
@@ -23,6 +23,8 @@ table! {
         /// velocity, and those of drivers, freedoms and measures, such as crank.position. Without
         /// value, stiffness and damping the force is an FMI input.
         value: &'a Value<'a> = Unread,
+        /// Whether value is the force of a spring of constant force: a number, with a potential energy.
+        constant: bool = Flag,
         /// Stiffness of a spring [N/m or N.m/rad].
         stiffness: Quantity = NUMBER,
         /// Value of the coordinate at which the spring is free of force [m or rad].
@@ -164,8 +166,22 @@ impl<'a> Context<'a> {
             self.warn_of_unit(free, coordinate.kind.unit());
         }
         const OWN: [Variable; 3] = [Variable::Time, Variable::Position, Variable::Velocity];
+        let is_constant = keys.constant.or(false)?;
         let value = match keys.value.value {
-            Some(value) => Some(self.force_value(value, &OWN, moving, start_time)?),
+            Some(value) => {
+                let expression = self.force_value(value, &OWN, moving, start_time)?;
+                if is_constant && expression.variables().next().is_some() {
+                    let message = format!("the `value` of {} is not constant", owner.subject);
+                    self.error(code::BAD_EXPRESSION, value.span(), message)
+                        .suggest("a constant spring has a number, over parameters at most");
+                    return None;
+                }
+                Some(expression)
+            }
+            None if is_constant => {
+                self.missing_key(owner, "value", "-20");
+                return None;
+            }
             None => None,
         };
         let resisting = [
@@ -200,6 +216,7 @@ impl<'a> Context<'a> {
                 coordinate: coordinate?,
                 law: (!is_input).then_some(ForceLaw {
                     value,
+                    is_constant,
                     spring,
                     damping,
                     ..ForceLaw::default()

@@ -1,10 +1,43 @@
 //! Energy, inertia and the derivatives of forces.
 
-use biela::kinematics::{Direction, ForceQuantity};
+use biela::kinematics::{Direction, ForceQuantity, Solution};
 use biela::mechanism::{DriverId, Jet, Load};
 
-use crate::common::stems;
+use crate::common::{assembled, parse, stems};
 use crate::forces::loaded::{Loaded, loaded};
+
+/// A spring of constant force along a distance c has the energy −f c, and pulls as it is told.
+#[test]
+fn a_constant_spring_has_a_potential() {
+    let mechanism = parse(
+        r#"
+format = 1
+name = "band"
+[parameters]
+pull = 20
+[ground.markers]
+O = [0, 0]
+A = [0, 0.3]
+[bodies.slider]
+markers = { P = [0, 0] }
+[joints]
+guide = { type = "translational", markers = ["ground.O", "slider.P"] }
+[drivers]
+way = { coordinate = "x", markers = ["ground.O", "slider.P"], start = 0.4 }
+[forces]
+band = { coordinate = "distance", markers = ["ground.A", "slider.P"], value = "-pull", constant = true }
+"#,
+    );
+    let (mut solver, _) = assembled(&mechanism);
+    let mut solution = Solution::new(&solver);
+    solution.seek_forces(&solver);
+    solution.solve(&mut solver).expect("it is regular");
+    // c = 0.5 m, whose change along the way is 0.8.
+    let energy = solution.force(ForceQuantity::PotentialEnergy);
+    assert!((energy - 10.0).abs() < 1e-14, "{energy}");
+    let effort = solution.force(ForceQuantity::Effort(DriverId(0)));
+    assert!((effort - 16.0).abs() < 1e-14, "{effort}");
+}
 
 /// d(T + V)/dt is the power of drivers and of all forces but springs; the derivatives in time are
 /// those along the motion itself.
@@ -54,13 +87,17 @@ fn power_becomes_energy() {
                     let law = force.load.law();
                     let [value, rate] = coordinate_of(&solver, &rates, coordinate);
                     let spring = law.and_then(|law| law.spring.as_ref());
+                    let constant = law.filter(|law| law.is_constant);
+                    let constant = constant.and_then(|law| law.value.as_ref());
+                    let constant =
+                        constant.map_or(0.0, |value| value.value(&solver.pose().parameters));
                     let elastic = spring.map_or(0.0, |spring| {
                         let parameters = &solver.pose().parameters;
                         let [stiffness, extension] =
                             spring.evaluate(&|p| parameters[p.index()], value);
                         stiffness * extension
                     });
-                    (size[0] + elastic) * rate
+                    (size[0] + elastic - constant) * rate
                 }
                 Load::Marker { marker, axes, .. } => {
                     let [x, y] = solver.marker(*marker, &rates);

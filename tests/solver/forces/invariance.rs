@@ -521,6 +521,7 @@ fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
                     damping,
                     stop: None,
                     friction: None,
+                    is_constant: _,
                 } = law
                 else {
                     unreachable!("no shipped mechanism has these");

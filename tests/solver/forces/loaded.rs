@@ -73,6 +73,7 @@ pub(crate) fn loaded(name: &str) -> Mechanism {
         coordinate: along(CoordinateKind::Angle, ground),
         law: Some(ForceLaw {
             value: Some(number(1.7)),
+            is_constant: true,
             damping: Some(number(0.4)),
             ..ForceLaw::default()
         }),

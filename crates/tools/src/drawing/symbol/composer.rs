@@ -210,7 +210,7 @@ impl<'a> Composer<'a> {
         };
         let ends = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
         let axis = self.axis(coordinate);
-        let is_elastic = law.is_some_and(|law| law.spring.is_some());
+        let is_elastic = law.is_some_and(|law| law.spring.is_some() || law.is_constant);
         let is_damped = law.is_some_and(|law| law.damping.is_some());
         match coordinate.kind {
             CoordinateKind::Angle if is_elastic || is_damped => self.add(Torsion {
