@@ -19,7 +19,7 @@ pub struct CoordinateEquation {
     pub law: Option<PrescribedMotion>,
     /// Value at which left − right is held.
     pub phase: Phase,
-    /// The gap in which left − right is free, in free motion.
+    /// Range in which left − right is free, in free motion: a gap, or from its value up.
     pub play: Option<Box<Play>>,
     /// Whether both sides are angles; lengths otherwise.
     pub is_angle: bool,

@@ -356,17 +356,21 @@ impl Joint {
         }
     }
 
-    /// Returns whether its two parts can only push each other; those of a rope can only pull.
+    /// Returns whether its two parts can only push each other; those of a rope can only pull, and one side
+    /// of an equation is the larger one.
     #[must_use]
     pub fn is_one_sided(&self) -> bool {
         match self.role() {
             Role::Cam(..) | Role::Rope(_) | Role::Wheels(Wheels::Track) => true,
+            Role::Equation(equation) => {
+                let play = equation.play.as_deref();
+                play.is_some_and(|play| play.backlash.is_none())
+            }
             Role::Point { .. }
             | Role::Guide(_)
             | Role::Rod(_)
             | Role::Wheels(Wheels::Mesh { .. } | Wheels::Belt { .. } | Wheels::Rack { .. })
-            | Role::Curve(_)
-            | Role::Equation(_) => false,
+            | Role::Curve(_) => false,
         }
     }
 

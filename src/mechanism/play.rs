@@ -8,7 +8,7 @@ use super::{Expression, Mechanism};
 #[derive(Clone, Debug)]
 pub struct Play {
     /// Width of the gap between the flanks, in the unit of the relation \[m or rad\]; `None` for a contact
-    /// that only pushes, or a rope that only pulls.
+    /// that only pushes, a rope that only pulls, or an equation of which one side is the larger one.
     pub backlash: Option<Expression>,
     /// Part of the velocity with which the parts bounce, from 0 to 1; `None` for zero.
     pub restitution: Option<Expression>,

@@ -29,9 +29,9 @@ impl Cause for Contact {
             }
             PassiveCause::Play(joint) => {
                 at.bounds = solver.limits_of_play(joint);
-                if self.is_angle {
-                    // The bodies' whole turns are no play.
-                    let middle = 0.5 * (at.bounds[0] + at.bounds[1]);
+                let middle = 0.5 * (at.bounds[0] + at.bounds[1]);
+                if self.is_angle && middle.is_finite() {
+                    // The bodies' whole turns are no play in a gap.
                     let turns = ((at.coordinate.value - middle) / TAU).round();
                     at.coordinate.value -= TAU * turns;
                 }

@@ -16,26 +16,31 @@ pub struct LiftOff<'a> {
     pub time: f64,
     /// Name of the joint.
     pub joint: &'a str,
-    /// Force by which its parts would have to pull each other, or the rope to push \[N\].
+    /// Force by which its parts would have to pull each other, or the rope to push \[N\]; a torque \[N m\]
+    /// between angles.
     pub pull: f64,
+    /// Whether its parts are the sides of an equation between angles.
+    pub is_angle: bool,
     /// Whether it is a rope.
     pub is_rope: bool,
 }
 
 impl fmt::Display for LiftOff<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (time, joint, pull) = (show_time(self.time), self.joint, shown(self.pull));
+        let unit = if self.is_angle { "N.m" } else { "N" };
+        let (time, joint) = (show_time(self.time), self.joint);
+        let pull = format!("{} {unit}", shown(self.pull));
         if self.is_rope {
             write!(
                 out,
-                "t = {time} s: rope `{joint}` would be slack: it would have to push with {pull} N; \
+                "t = {time} s: rope `{joint}` would be slack: it would have to push with {pull}; \
                  the mechanism keeps its length"
             )
         } else {
             write!(
                 out,
                 "t = {time} s: joint `{joint}` would lift off: its parts would have to pull each \
-                 other with {pull} N; the mechanism keeps them together"
+                 other with {pull}; the mechanism keeps them together"
             )
         }
     }
@@ -56,11 +61,13 @@ impl Forces {
             let pulls = force < -least;
             let begins = pulls && !*lifted;
             *lifted = pulls;
+            let joint = &self.mechanism.joints[contact.joint];
             begins.then(|| LiftOff {
                 time: state.pose.time,
-                joint: &self.mechanism.joints[contact.joint].name,
+                joint: &joint.name,
                 pull: -force,
-                is_rope: self.mechanism.joints[contact.joint].rope().is_some(),
+                is_angle: joint.equation().is_some_and(|own| own.is_angle),
+                is_rope: joint.rope().is_some(),
             })
         })
     }

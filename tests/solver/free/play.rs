@@ -253,6 +253,138 @@ fn touching_flanks_carry_the_torque() {
     assert_near(reaction(&mut run, 2, 2), -0.02 * 0.4 / inertia / 3.0);
 }
 
+/// A bolt on a spring is at or above the contour of the nose that passes below it, A (1 − cos ωt): it leaves
+/// where the spring cannot follow, m A ω² cos ωt + k (h + x₀) = 0, swings about −x₀, and lands.
+#[test]
+fn a_bolt_leaves_the_nose_that_lifts_it() {
+    let [mass, stiffness, lead, height, omega] = [0.2_f64, 100.0, 0.01, 0.005, 50.0];
+    let mechanism = parse(&format!(
+        r#"
+format = 1
+name = "bolt"
+[ground.markers]
+O = [0, 0]
+G = [0, 0, "90*deg"]
+[bodies.door]
+markers = {{ O = [0, 0] }}
+[bodies.bolt]
+mass = {mass}
+markers = {{ G = [0, 0, "90*deg"] }}
+[joints]
+hinge = {{ type = "translational", markers = ["ground.O", "door.O"] }}
+guide = {{ type = "translational", markers = ["ground.G", "bolt.G"] }}
+latch = {{ type = "coupling", equation = "lift = {height}*(1 - cos(way/0.01))", unilateral = true }}
+[drivers]
+way = {{ coordinate = "x", markers = ["ground.O", "door.O"], motion = "0.5*t" }}
+[freedoms]
+lift = {{ coordinate = "x", markers = ["ground.G", "bolt.G"], start = 0 }}
+[forces]
+spring = {{ coordinate = "x", markers = ["ground.G", "bolt.G"], stiffness = {stiffness}, free = -{lead} }}
+[simulation]
+gravity = [0, 0]
+"#
+    ));
+    let place = |t: f64| height * (1.0 - (omega * t).cos());
+    let rate = |t: f64| height * omega * (omega * t).sin();
+    let push =
+        |t: f64| mass * height * omega * omega * (omega * t).cos() + stiffness * (place(t) + lead);
+    let leaves = {
+        let spare = height * (mass * omega * omega - stiffness);
+        (-stiffness * (height + lead) / spare).acos() / omega
+    };
+    let own = (stiffness / mass).sqrt();
+    let flight = |t: f64| {
+        let (sine, cosine) = (own * (t - leaves)).sin_cos();
+        let [far, fast] = [place(leaves) + lead, rate(leaves) / own];
+        [
+            far * cosine + fast * sine - lead,
+            own * (fast * cosine - far * sine),
+        ]
+    };
+    let (mut low, mut high) = (leaves + 0.02, std::f64::consts::TAU / omega);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if flight(middle)[0] > place(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let closing = rate(low) - flight(low)[1];
+    let mut run = Run::new(&mechanism, TOLERANCE, Fed::default());
+    run.to(0.02);
+    assert_near(reaction(&mut run, 2, 2), push(0.02));
+    let middle = 0.5 * (leaves + low);
+    let mut events = played(&mut run, middle, 2);
+    assert_near(run.state()[0], flight(middle)[0]);
+    assert!(reaction(&mut run, 2, 2).abs() < f64::MIN_POSITIVE);
+    events.extend(played(&mut run, low + 0.002, 2));
+    assert_eq!(events[0].kind, EventKind::Leaves, "{events:?}");
+    assert_near(events[0].time, leaves);
+    assert_near(events[1].time, low);
+    let EventKind::Impact { speed } = events[1].kind else {
+        panic!("{events:?}");
+    };
+    assert_near(speed, closing);
+    assert_near(run.state()[0], place(low + 0.002));
+    assert_near(reaction(&mut run, 2, 2), push(low + 0.002));
+}
+
+/// Two wheels of which a is at or beyond twice b: turns count, and b, ten turns behind, drives a from where
+/// they meet, with momenta changed by P and −2 P.
+#[test]
+fn the_faster_wheel_meets_the_other_after_turns() {
+    let text = |equation: &str| {
+        format!(
+            r#"
+format = 1
+name = "wheels"
+[ground.markers]
+O = [0, 0]
+[bodies.left]
+mass = 1
+inertia = 0.3
+markers = {{ O = [0, 0] }}
+estimate = [0, 0, 63]
+[bodies.right]
+mass = 1
+inertia = 0.5
+markers = {{ O = [0, 0] }}
+[joints]
+o = {{ type = "revolute", markers = ["ground.O", "left.O"] }}
+p = {{ type = "revolute", markers = ["ground.O", "right.O"] }}
+pawl = {{ type = "coupling", equation = "{equation}", unilateral = true, restitution = 0.25 }}
+[freedoms]
+a = {{ coordinate = "angle", markers = ["ground.O", "left.O"], start = 63 }}
+b = {{ coordinate = "angle", markers = ["ground.O", "right.O"], start = 0, velocity = 7 }}
+"#
+        )
+    };
+    let (time, closing) = (63.0 / 14.0, 14.0);
+    let impulse = 1.25 * closing / (1.0 / 0.3 + 4.0 / 0.5);
+    let [a, b] = [impulse / 0.3, 7.0 - 2.0 * impulse / 0.5];
+    let mut run = Run::new(&parse(&text("a = 2*b")), TOLERANCE, Fed::default());
+    let events = played(&mut run, time + 1.0, 3);
+    assert_eq!(events.len(), 1, "{events:?}");
+    assert_near(events[0].time, time);
+    let EventKind::Impact { speed } = events[0].kind else {
+        panic!("{events:?}");
+    };
+    assert_near(speed, closing);
+    let state = run.state();
+    let wanted = [63.0 + a, 7.0 * time + b, a, b];
+    for (found, wanted) in state.into_iter().zip(wanted) {
+        assert_near(found, wanted);
+    }
+    // The other way round they overlap: the start is moved apart, by the least motion in the metric of
+    // the inertia.
+    let run = Run::new(&parse(&text("2*b = a")), TOLERANCE, Fed::default());
+    let [values, ..] = run.freedoms();
+    let push = 63.0 / (1.0 / 0.3 + 4.0 / 0.5);
+    assert_near(values[0], 63.0 - push / 0.3);
+    assert_near(values[1], 2.0 * push / 0.5);
+}
+
 /// A start at which the parts would overlap is moved until they touch.
 #[test]
 fn an_overlapping_start_is_closed() {

@@ -6,7 +6,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::{LawOfCoupling, MovingNames};
 use crate::mechanism::read::context::Context;
 use crate::mechanism::read::kind::Described;
-use crate::mechanism::read::kind::{Item, Kind, schema};
+use crate::mechanism::read::kind::{Flag, Item, Kind, schema};
 use crate::mechanism::read::motion::MotionKeys;
 use crate::mechanism::read::number::{NUMBER, Quantity, RATIO};
 use crate::mechanism::read::points::PointKeys;
@@ -41,7 +41,9 @@ joint_type! {
         phase: Phase = PhaseOf(NUMBER),
         /// Width of the gap in which left - right is free, in free motion.
         backlash: Quantity = NUMBER.positive(),
-        /// Part of the velocity with which it bounces at the ends of the gap, from 0 to 1; zero if left out.
+        /// Whether left is at least right in free motion, in place of equal.
+        unilateral: bool = Flag,
+        /// Part of the velocity with which it bounces where it is held, from 0 to 1; zero if left out.
         restitution: Quantity = RATIO,
     }
 }
@@ -94,7 +96,19 @@ impl<'a> Context<'a> {
     fn coupling(&mut self, keys: Coupling<'a>) -> Option<Made> {
         let law = keys.law.optional()?;
         let phase = phase(keys.phase)?;
-        let play = self.backlash(keys.backlash, keys.restitution, &keys.owner)?;
+        let play = match (keys.unilateral.value, &keys.backlash.key) {
+            (Some(true), Some(span)) => {
+                let subject = &keys.owner.subject;
+                let message = format!("{subject} has `backlash`, but is `unilateral`");
+                self.error(code::UNKNOWN_KEY, span.clone(), message)
+                    .suggest("left - right is free in a gap, or above its least value");
+                return None;
+            }
+            (Some(true), None) => {
+                self.unilateral(keys.unilateral, keys.restitution, &keys.owner)?
+            }
+            _ => self.backlash(keys.backlash, keys.restitution, &keys.owner)?,
+        };
         let value = keys.equation.value?;
         let declared = self.coordinates.iter();
         let declared: Vec<(&str, Coordinate)> = declared
