@@ -1,6 +1,6 @@
 //! Forces on a mechanism, besides gravity.
 
-use super::friction::FrictionLaw;
+use super::friction::{Bearing, FrictionLaw, SlidingWay};
 use super::{
     Body, Coordinate, Expression, MarkerId, Mechanism, Number, Order, ParameterId, Signal, Unit,
     Variable,
@@ -207,6 +207,24 @@ impl Mechanism {
 impl Force {
     /// Returns the file's own description, or else the place where the force acts.
     fn describe(&self, mechanism: &Mechanism) -> String {
+        if let (true, Some(bearing), Some(coordinate)) = (
+            self.description.is_empty(),
+            self.load.slides(),
+            self.load.coordinate(),
+        ) {
+            let joint = &mechanism.joints[bearing.joint];
+            let word = coordinate.kind.effort_word();
+            return match bearing.way {
+                SlidingWay::Rod(end) => {
+                    let marker = mechanism.marker_path([joint.from, joint.to][end]);
+                    format!(
+                        "{word} of friction at the pin of link `{}` at `{marker}`",
+                        joint.name
+                    )
+                }
+                _ => format!("{word} of friction in joint `{}`", joint.name),
+            };
+        }
         match &self.load {
             _ if !self.description.is_empty() => self.description.clone(),
             load @ (Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. }) => {
@@ -429,6 +447,13 @@ impl Load {
             Some(PassiveCause::Friction(law)) => Some(law),
             _ => None,
         }
+    }
+
+    /// Returns the joint in which friction acts along a way of its own, no coordinate.
+    #[must_use]
+    pub fn slides(&self) -> Option<&Bearing> {
+        let bearing = self.friction()?.bearing.as_ref();
+        bearing.filter(|bearing| bearing.way != SlidingWay::Coordinate)
     }
 
     /// Returns the part of a description that tells a stop and friction from other forces.

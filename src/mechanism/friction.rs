@@ -31,6 +31,19 @@ pub struct Bearing {
     pub joint: usize,
     /// Its shape.
     pub shape: BearingShape,
+    /// The way along which its sides slide.
+    pub way: SlidingWay,
+}
+
+/// Way along which the two sides of a [`Bearing`] slide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SlidingWay {
+    /// The coordinate of the force.
+    Coordinate,
+    /// The tangent at the contact of a cam or at the point on a curve; on a roller the turning of its pin.
+    Contact,
+    /// The turning of a link against the body of its first (0) or second (1) marker.
+    Rod(usize),
 }
 
 /// Shape of a [`Bearing`].
@@ -47,6 +60,8 @@ pub enum BearingShape {
         /// point, or everywhere alike.
         length: Option<Expression>,
     },
+    /// The contact that an equation between lengths keeps: its effort presses.
+    Effort,
 }
 
 impl Bearing {
@@ -66,6 +81,7 @@ impl Bearing {
         match &self.shape {
             BearingShape::Pin { radius } => force * radius.evaluate(parameter, zero),
             BearingShape::Guide { length: None } => force,
+            BearingShape::Effort => torque.abs(),
             BearingShape::Guide {
                 length: Some(length),
             } => force.larger(torque.abs() * 2.0 / length.evaluate(parameter, zero)),
@@ -126,6 +142,7 @@ impl FrictionLaw {
             .and_then(|bearing| match &bearing.shape {
                 BearingShape::Pin { radius } => Some(radius),
                 BearingShape::Guide { length } => length.as_ref(),
+                BearingShape::Effort => None,
             });
         let others = [
             &self.sticking,

@@ -85,7 +85,7 @@ pub use force::{
     ElasticStop, Force, ForceComponent, ForceLaw, Load, PassiveCause, RegularisedFriction, Spring,
 };
 pub use force_quantity::ForceQuantity;
-pub use friction::{Bearing, BearingShape, FrictionLaw};
+pub use friction::{Bearing, BearingShape, FrictionLaw, SlidingWay};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId, ShapeId};
 pub use input::{Input, LoadInput, LoadTarget};
 pub use joint::{CamFollower, Guide, Joint, JointKind, RackSide, WheelSizes, Wheels};

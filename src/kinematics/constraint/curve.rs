@@ -165,6 +165,12 @@ impl CurvePath {
         [beside(point, slope, offset), slope]
     }
 
+    /// Returns the slope of the curve without its offset, whose direction is that of the parallel curve.
+    pub(super) fn slope<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>, s: N) -> [N; 2] {
+        let [_, slope] = self.along(at, s);
+        slope
+    }
+
     /// Returns a component of the curve with its offset at a place, with two derivatives.
     fn component<S: Base>(
         &self,

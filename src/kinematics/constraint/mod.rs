@@ -35,6 +35,7 @@ mod projection;
 mod rack_and_pinion;
 mod region;
 mod rope;
+mod sliding;
 mod wheel_pair;
 
 use std::any::Any;
@@ -56,6 +57,7 @@ pub use projection::Projection;
 pub use rack_and_pinion::RackAndPinion;
 pub use region::Region;
 pub use rope::{RopeLength, Station};
+pub use sliding::{Sliding, SlidingContact};
 pub use wheel_pair::WheelPair;
 
 use crate::mechanism::{Coordinate, CoordinateKind};

@@ -261,18 +261,19 @@ impl Forces {
             .map_err(|Rejected| SINGULAR_HERE)?;
         let multipliers = self.varied_multipliers(system, state, at.bodies, &rows, &demand)?;
         let drivers = self.varied_drivers(system, state, sensitivity, &masses, &rows, &multipliers);
-        let open = self.rows.open.iter().map(|open| {
-            let open = open.as_ref()?;
-            Some((probe.entries(&*open.relation, state), open.force))
+        let more = self.rows.more.iter().map(|all| {
+            let own = all.iter();
+            own.map(|own| (probe.entries(&*own.relation, state), own.force))
+                .collect::<Vec<_>>()
         });
-        let open: Vec<_> = open.collect();
+        let more: Vec<_> = more.collect();
         let joints = 0..mechanism.joints.len();
         let reactions = joints.map(|joint| {
             let own = self.rows.joints[joint].iter();
             let own = own.map(|&row| (&*rows[row], multipliers[row]));
-            let open = open[joint].iter();
-            let open = open.map(|(entries, force)| (&**entries, sizes[*force][0]));
-            self.varied_reaction(at.bodies, joint, own.chain(open))
+            let more = more[joint].iter();
+            let more = more.map(|(entries, force)| (&**entries, sizes[*force][0]));
+            self.varied_reaction(at.bodies, joint, own.chain(more))
                 .map(|value| value.first())
         });
         let held = self.rows.constraints.iter();

@@ -7,7 +7,7 @@ use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Coupling, Gradient};
 use crate::kinematics::origin::Origin;
 use crate::kinematics::system::{System, opens_towards};
-use crate::mechanism::{BodyId, Joint, Mechanism, Number, Reported};
+use crate::mechanism::{BearingShape, BodyId, Joint, Mechanism, Number, Reported};
 
 /// The sum of the generalized forces that rows exert on a joint's second body, or on ground.
 #[derive(Clone, Copy, Debug)]
@@ -76,17 +76,18 @@ pub(super) struct ReactionRows {
     others: Vec<usize>,
     /// Those of them that are couplings.
     couplings: Vec<usize>,
-    /// The force along the relation of each joint with play, by the joint.
-    pub(super) open: Vec<Option<OpenForce>>,
+    /// The forces that a joint exerts besides those of its rows, by the joint: along its relation if it has
+    /// play, and friction on the pins of a link or a roller, which they bear as well.
+    pub(super) more: Vec<Vec<OwnForce>>,
     /// Row of each constraint.
     pub(super) constraints: Vec<usize>,
     /// Row of each driver.
     pub(super) drivers: Vec<usize>,
 }
 
-/// The force along the relation of a joint with play.
+/// A force of a joint along a relation that is no row.
 #[derive(Debug)]
-pub(super) struct OpenForce {
+pub(super) struct OwnForce {
     /// Index of the force in the mechanism.
     pub(super) force: usize,
     pub(super) relation: Arc<dyn Constraint>,
@@ -100,7 +101,7 @@ impl ReactionRows {
             pins: Vec::new(),
             others: Vec::new(),
             couplings: Vec::new(),
-            open: mechanism.joints.iter().map(|_| None).collect(),
+            more: mechanism.joints.iter().map(|_| Vec::new()).collect(),
             constraints: vec![0; mechanism.constraints.len()],
             drivers: vec![0; mechanism.drivers.len()],
         };
@@ -121,11 +122,14 @@ impl ReactionRows {
             }
         }
         for (force, definition) in mechanism.forces.iter().enumerate() {
-            if let Some(joint) = definition.load.play()
-                && let Some(open) = system.open_relation(joint)
+            let load = &definition.load;
+            let pin = load.slides();
+            let pin = pin.filter(|own| matches!(own.shape, BearingShape::Pin { .. }));
+            if let (Some(joint), Some(coordinate)) =
+                (load.play().or_else(|| Some(pin?.joint)), load.coordinate())
             {
-                let relation = Arc::clone(&open.relation);
-                rows.open[joint] = Some(OpenForce { force, relation });
+                let relation = system.relation_of(load, coordinate);
+                rows.more[joint].push(OwnForce { force, relation });
             }
         }
         rows
@@ -146,7 +150,7 @@ impl ReactionRows {
     /// Returns the couplings with play: the index of the joint, that of its force, and its relation.
     pub(super) fn open_couplings(&self) -> impl Iterator<Item = (usize, usize, &Coupling)> {
         self.couplings.iter().filter_map(|&joint| {
-            let open = self.open[joint].as_ref()?;
+            let open = self.more[joint].first()?;
             let relation: &dyn Any = &*open.relation;
             Some((joint, open.force, relation.downcast_ref()?))
         })
@@ -195,11 +199,11 @@ impl ReactionRows {
         let mechanism = system.mechanism();
         let Joint { kind, to, .. } = &mechanism.joints[joint];
         let rows = &self.joints[joint];
-        let open = self.open[joint].as_ref();
-        let open = open.and_then(|open| Some((&*open.relation, sizes.get(open.force)?[0])));
-        let along = match (&rows[..], open) {
-            (&[row], _) => multipliers[row],
-            (_, open) => open.map_or(0.0, |(_, size)| size),
+        let more = self.more[joint].iter();
+        let more = more.filter_map(|own| Some((&*own.relation, sizes.get(own.force)?[0])));
+        let along = match &rows[..] {
+            &[row] => multipliers[row],
+            _ => more.clone().next().map_or(0.0, |(_, size)| size),
         };
         match Reported::of(kind) {
             // The row has the entry one at the second wheel, or the equation.
@@ -214,7 +218,7 @@ impl ReactionRows {
         let mut gradient = Gradient::new();
         let rows = rows.iter();
         let rows = rows.map(|&row| (&*system.equations()[row].constraint, multipliers[row]));
-        for (constraint, size) in rows.chain(open) {
+        for (constraint, size) in rows.chain(more) {
             gradient.clear();
             constraint.gradient(at, &mut gradient);
             for (column, partial) in gradient.entries() {

@@ -1,17 +1,17 @@
 //! Rates and forces at the pose of a solver.
 
+use std::sync::Arc;
+
 use super::output::Output;
 use crate::kinematics::analysis::Direction;
-use crate::kinematics::constraint::{Constraint, of_coordinate};
+use crate::kinematics::constraint::Constraint;
 use crate::kinematics::error::Error;
 use crate::kinematics::forces::{
     ForceParts, ForceQuantity, ForceSensitivity, Forces, Friction, KnownMotion,
 };
 use crate::kinematics::path::Rates;
 use crate::kinematics::solver::Solver;
-use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, Jet, Load, Mechanism, ParameterId, PassiveCause,
-};
+use crate::mechanism::{DerivedMeasure, DriverId, Dual, Jet, Load, ParameterId, PassiveCause};
 
 /// The rates at the pose of a [`Solver`] and, where they are [sought](Self::seek_forces), the
 /// forces.
@@ -70,7 +70,7 @@ pub struct Solution {
 struct Rubbed {
     /// Index of its load.
     load: usize,
-    relation: Box<dyn Constraint>,
+    relation: Arc<dyn Constraint>,
     /// Index of the joint, for friction in one.
     joint: Option<usize>,
 }
@@ -100,7 +100,7 @@ impl Solution {
         self.forces = Some(forces);
         if !solver.mechanism().has_freedoms() {
             self.friction = solver.friction();
-            self.rubbed = rubbed(solver.mechanism());
+            self.rubbed = rubbed(solver);
         }
         let outputs = &solver.mechanism().outputs;
         let mut measures = solver.mechanism().derived.iter();
@@ -313,22 +313,21 @@ impl Solution {
 }
 
 /// Returns the places of the friction of a mechanism without freedoms.
-fn rubbed(mechanism: &Mechanism) -> Vec<Rubbed> {
+fn rubbed(solver: &Solver) -> Vec<Rubbed> {
+    let mechanism = solver.mechanism();
     let loads = mechanism.load_inputs().len()..;
     let forces = mechanism.forces.iter();
     let frictions = forces.filter_map(|force| match &force.load {
         Load::Passive {
             coordinate,
             cause: PassiveCause::Friction(law),
-        } => Some((coordinate, law)),
+        } => Some((solver.relation_of(&force.load, coordinate), law)),
         _ => None,
     });
-    let rubbed = loads
-        .zip(frictions)
-        .map(|(load, (coordinate, law))| Rubbed {
-            load,
-            relation: of_coordinate(coordinate),
-            joint: law.bearing.as_ref().map(|bearing| bearing.joint),
-        });
+    let rubbed = loads.zip(frictions).map(|(load, (relation, law))| Rubbed {
+        load,
+        relation,
+        joint: law.bearing.as_ref().map(|bearing| bearing.joint),
+    });
     rubbed.collect()
 }

@@ -20,13 +20,14 @@ pub(super) use play::{OpenRelation, opens_towards};
 use super::constraint::configuration::{Configuration, on_nearest_turn};
 use super::constraint::moving_configuration::VariedConfiguration;
 use crate::kinematics::constraint::{
-    self, Constraint, Dimension, Incidence, OnCurve, RopeLength, TurnEffect,
+    self, Constraint, Dimension, Incidence, OnCurve, RopeLength, Sliding, SlidingContact,
+    TurnEffect,
 };
 use crate::kinematics::linear::{nan_or_larger, spread};
 use crate::kinematics::{Error, Origin};
 use crate::mechanism::{
-    Coordinate, DriverId, Expression, Jet, Load, Mechanism, MotionInForce, MovingProfile, Number,
-    ParameterId, Phase, PrescribedMotion,
+    Bearing, Coordinate, DriverId, Expression, Jet, Joint, Load, Mechanism, MotionInForce,
+    MovingProfile, Number, ParameterId, Phase, PrescribedMotion, SlidingWay,
 };
 
 /// The target of c(q).
@@ -217,17 +218,35 @@ impl System {
     }
 
     /// Returns the relation along which a force acts that has this coordinate: of a joint with play its
-    /// own, or else that of the coordinate.
+    /// own, of friction in some joints that of their sliding, or else that of the coordinate.
     pub(in crate::kinematics) fn relation_of(
         &self,
         load: &Load,
         coordinate: &Coordinate,
     ) -> Arc<dyn Constraint> {
         let open = load.play().and_then(|joint| self.open_relation(joint));
-        match open {
-            Some(open) => Arc::clone(&open.relation),
+        if let Some(open) = open {
+            return Arc::clone(&open.relation);
+        }
+        match load.slides().and_then(|bearing| self.sliding(bearing)) {
+            Some(sliding) => Arc::new(sliding),
             None => constraint::of_coordinate(coordinate).into(),
         }
+    }
+
+    /// Returns the way along which the two sides of a joint slide that is no coordinate.
+    fn sliding(&self, bearing: &Bearing) -> Option<Sliding> {
+        let Joint { from, to, .. } = self.mechanism.joints[bearing.joint];
+        if let SlidingWay::Rod(end) = bearing.way {
+            let [from, to] = if end == 0 { [from, to] } else { [to, from] };
+            let contact = SlidingContact::Rod;
+            return Some(Sliding { from, to, contact });
+        }
+        let rows = self.rows_of(&[Origin::Joint(bearing.joint)]).into_iter();
+        let held = rows.map(|row| &*self.equations[row].constraint);
+        let open = self.open_relation(bearing.joint);
+        let mut relations = held.chain(open.map(|open| &*open.relation));
+        relations.find_map(Sliding::of)
     }
 
     /// Returns the relation of a joint with play.

@@ -92,6 +92,10 @@ pub trait Number:
     /// Returns whether a derivative is not zero: always false for plain numbers and intervals.
     fn varies(self) -> bool;
 
+    /// Returns the value as a number that stays as it is; a change along a direction stays.
+    #[must_use]
+    fn held(self) -> Self;
+
     /// Returns whether the value is at most that of `other`; `None` if that differs from point to
     /// point. NaN is at most any number, so that a minimum keeps it.
     fn at_most(self, other: Self) -> Option<bool>;

@@ -35,6 +35,10 @@ impl Number for f64 {
         false
     }
 
+    fn held(self) -> Self {
+        self
+    }
+
     fn at_most(self, other: Self) -> Option<bool> {
         Some(self <= other || self.is_nan())
     }

@@ -233,6 +233,10 @@ impl<S: Number, const N: usize> Number for Taylor<S, N> {
         !self.derivatives.iter().all(|k| k.is_zero())
     }
 
+    fn held(self) -> Self {
+        Self::fixed(self.value)
+    }
+
     fn at_most(self, other: Self) -> Option<bool> {
         self.value.at_most(other.value)
     }

@@ -159,7 +159,7 @@ impl<'a> Context<'a> {
         // Indices are known once all joints have been read.
         let all = (joints.len() == root.joints.items().len()).then_some(&*joints);
         let friction = |context: &mut Self, entry| context.friction(entry, all);
-        forces.extend(self.each(&root.friction, friction));
+        forces.extend(self.each(&root.friction, friction).into_iter().flatten());
         if has_freedoms {
             let plays = joints.iter().enumerate();
             forces.extend(plays.filter_map(|(index, joint)| joint.force_of_play(index)));

@@ -12,3 +12,4 @@ mod joint_friction;
 mod loaded;
 mod published;
 mod redundant;
+mod sliding;

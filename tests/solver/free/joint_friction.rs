@@ -87,25 +87,11 @@ fn acceleration(angle: f64, velocity: f64) -> f64 {
     acceleration
 }
 
-/// The motion from rest to a time by the method of Runge and Kutta of order 4, in steps of 1e-4 s: their
-/// error is some 1e-14.
+/// The motion from rest to a time.
 fn swung(start: f64, until: f64) -> [f64; 2] {
-    let steps = (until / 1e-4).round() as usize;
-    let h = until / steps as f64;
     let slope = |[angle, velocity]: [f64; 2]| [velocity, acceleration(angle, velocity)];
-    let ahead = |x: [f64; 2], part: f64, k: [f64; 2]| [x[0] + part * k[0], x[1] + part * k[1]];
     // It falls from the first instant on.
-    let mut x = [start, -0.0];
-    for _ in 0..steps {
-        let first = slope(x);
-        let second = slope(ahead(x, 0.5 * h, first));
-        let third = slope(ahead(x, 0.5 * h, second));
-        let last = slope(ahead(x, h, third));
-        for k in 0..2 {
-            x[k] += h / 6.0 * (first[k] + 2.0 * (second[k] + third[k]) + last[k]);
-        }
-    }
-    x
+    integrated([start, -0.0], slope, until)
 }
 
 #[test]
@@ -127,6 +113,193 @@ fn a_pendulum_sticks_where_its_pin_bears_the_moment() {
     assert_eq!(events.len(), 1, "{events:?}");
     assert!((run.state()[0] - hanging).abs() < 0.02, "{:?}", run.state());
     assert_near(run.free.energy_error(), 0.0);
+}
+
+/// Integrates by the method of Runge and Kutta of order 4, in steps of 1e-4 s: their error is some 1e-13.
+fn integrated<const N: usize>(
+    mut x: [f64; N],
+    slope: impl Fn([f64; N]) -> [f64; N],
+    until: f64,
+) -> [f64; N] {
+    let steps = (until / 1e-4).round() as usize;
+    let h = until / steps as f64;
+    let ahead = |mut x: [f64; N], part: f64, k: [f64; N]| {
+        x.iter_mut().zip(k).for_each(|(x, k)| *x += part * k);
+        x
+    };
+    for _ in 0..steps {
+        let first = slope(x);
+        let second = slope(ahead(x, 0.5 * h, first));
+        let third = slope(ahead(x, 0.5 * h, second));
+        let last = slope(ahead(x, h, third));
+        for k in 0..N {
+            x[k] += h / 6.0 * (first[k] + 2.0 * (second[k] + third[k]) + last[k]);
+        }
+    }
+    x
+}
+
+/// A bead in an upright round groove: R θ″ = −g cos θ ± μ |N| / m, N = m (R θ′² − g sin θ).
+#[test]
+fn a_bead_slides_in_a_round_groove() {
+    let (radius, start) = (0.5, -0.3_f64);
+    let text = format!(
+        r#"
+format = 1
+name = "bead"
+[ground.markers]
+O = [0, 0]
+[bodies.bead]
+mass = 2
+markers = {{ P = [0, 0] }}
+estimate = [{x}, {y}, 0]
+[constraints]
+level = {{ coordinate = "angle", markers = ["ground.O", "bead.P"], value = 0 }}
+[joints]
+groove = {{ type = "curve", markers = ["ground.O", "bead.P"], x = "0.5*cos(s)", y = "0.5*sin(s)", from = "-pi", to = 0 }}
+[freedoms]
+x = {{ coordinate = "x", markers = ["ground.O", "bead.P"], start = {x} }}
+[friction]
+rub = {{ joint = "groove", coefficient = 0.2, static = 0.25 }}
+"#,
+        x = radius * start.cos(),
+        y = radius * start.sin(),
+    );
+    let slope = |[angle, rate]: [f64; 2]| {
+        let normal = radius * rate * rate - G * angle.sin();
+        // It goes down, to lower angles.
+        [rate, (-G * angle.cos() + 0.2 * normal) / radius]
+    };
+    let [angle, rate] = integrated([start, 0.0], slope, 0.5);
+    let state = [radius * angle.cos(), -radius * angle.sin() * rate];
+    check(&text, 0.5, &[], state);
+    // It comes to rest where the groove is flatter than tan⁻¹ 0.25.
+    let mut run = Run::new(&parse(&text), 1e-10, Fed::default());
+    let events = played(&mut run, 10.0, 7);
+    assert_eq!(
+        events.last().map(|event| event.kind),
+        Some(EventKind::Sticks)
+    );
+    let [x, rate] = [run.state()[0], run.state()[1]];
+    assert!(x.abs() < 0.5 * 0.25 && rate.abs() < 1e-14, "{x} {rate}");
+    assert!(run.free.energy_error().abs() < 1e-9);
+}
+
+/// A carriage on a straight curve is a drawer on a guide: a force beside it jams it in the same way.
+#[test]
+fn a_carriage_rubs_by_its_length() {
+    let carriage = |coefficient: f64| {
+        let parts = format!(
+            r#"
+[forces]
+pull = {{ marker = "slider.P", value = [10, 0], torque = 0.5 }}
+[friction]
+rail = {{ joint = "guide", coefficient = {coefficient}, length = 0.2 }}
+[simulation]
+gravity = [0, 0]
+"#
+        );
+        let joint = "type = \"curve\", x = \"s\", y = \"0*s\", from = -1, follow = true";
+        slider(0.0, 0.0, 0.0, &parts).replace("type = \"translational\"", joint)
+    };
+    let acceleration = 10.0 * (1.0 - 2.0 * 0.3 * 0.05 / 0.2) / 2.0;
+    let state = [0.125 * acceleration, 0.5 * acceleration];
+    check(&carriage(0.3), 0.5, &[], state);
+    check(&carriage(2.1), 0.5, &[], [0.0, 0.0]);
+}
+
+/// A part on a bed that shakes at an angle β: it slides while it is pressed by m (g + ÿ), flies freely from
+/// where that ends, and slides on where it lands.
+fn conveyor(beta: f64, speed: f64) -> String {
+    format!(
+        r#"
+format = 1
+name = "conveyor"
+[ground.markers]
+O = [0, 0, "{beta}*deg"]
+G = [0, 0]
+[bodies.bed]
+markers = {{ O = [0, 0, "{beta}*deg"], B = [0, 0] }}
+[bodies.part]
+mass = 0.7
+markers = {{ C = [0, 0] }}
+[constraints]
+level = {{ coordinate = "angle", markers = ["ground.G", "part.C"], value = 0 }}
+[joints]
+guide = {{ type = "translational", markers = ["ground.O", "bed.O"] }}
+press = {{ type = "coupling", equation = "height = 0", unilateral = true }}
+[drivers]
+shake = {{ coordinate = "x", markers = ["ground.O", "bed.O"], motion = "0.01*sin(60*t)" }}
+[freedoms]
+x = {{ coordinate = "x", markers = ["ground.G", "part.C"], start = 0, velocity = {speed} }}
+y = {{ coordinate = "y", markers = ["ground.G", "part.C"], start = 0, velocity = {rise} }}
+[measures]
+height = {{ coordinate = "y", markers = ["bed.B", "part.C"] }}
+slip = {{ coordinate = "x", markers = ["bed.B", "part.C"] }}
+[friction]
+rub = {{ joint = "press", of = "slip", coefficient = 0.3 }}
+"#,
+        rise = 0.6 * beta.to_radians().sin(),
+    )
+}
+
+#[test]
+fn a_part_hops_on_a_conveyor() {
+    let (coefficient, speed, sine) = (0.3, 2.0, 0.5);
+    let place = |t: f64| 0.01 * sine * (60.0 * t).sin();
+    let rate = |t: f64| 0.6 * sine * (60.0 * t).cos();
+    let leaves = (G / (36.0 * sine)).asin() / 60.0;
+    // While it slides, its speed falls by μ (g t + ẏ), and in flight it stays.
+    let slid = |[x, v]: [f64; 2], from: f64, t: f64| {
+        let h = t - from;
+        let fall = 0.5 * G * h * h + place(t) - place(from) - rate(from) * h;
+        [
+            x + v * h - coefficient * fall,
+            v - coefficient * (G * h + rate(t) - rate(from)),
+        ]
+    };
+    let flight = |t: f64| {
+        let h = t - leaves;
+        place(leaves) + h * (rate(leaves) - 0.5 * G * h)
+    };
+    let (mut low, mut high) = (leaves + 0.005, leaves + 0.09);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if flight(middle) > place(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let [x, v] = slid([0.0, speed], 0.0, leaves);
+    let landed = [x + v * (low - leaves), v];
+    let mut run = Run::new(&parse(&conveyor(30.0, speed)), 1e-10, Fed::default());
+    let compare = |run: &Run, [x, v]: [f64; 2]| {
+        assert_near(run.state()[0], x);
+        assert_near(run.state()[2], v);
+    };
+    let mut events = played(&mut run, 0.5 * leaves, 2);
+    compare(&run, slid([0.0, speed], 0.0, 0.5 * leaves));
+    events.extend(played(&mut run, 0.5 * (leaves + low), 2));
+    compare(&run, [x + v * 0.5 * (low - leaves), v]);
+    let next = low + 0.003;
+    events.extend(played(&mut run, next, 2));
+    compare(&run, slid(landed, low, next));
+    assert_near(events[0].time, leaves);
+    assert_near(events[1].time, low);
+    assert_eq!(events[0].kind, EventKind::Leaves);
+}
+
+/// Where nothing moves it aside, it hops on its place.
+#[test]
+fn a_part_hops_on_its_place() {
+    let mut run = Run::new(&parse(&conveyor(90.0, 0.0)), 1e-10, Fed::default());
+    let events = played(&mut run, 1.0, 7);
+    assert!(events.len() < 100, "{}", events.len());
+    assert!(run.state()[0].abs() < 1e-12, "{:?}", run.state());
+    let landings = events.iter();
+    let landings = landings.filter(|event| matches!(event.kind, EventKind::Impact { .. }));
+    assert!(landings.count() > 4, "{events:?}");
 }
 
 /// A crank, a rod and a slider with friction in all joints.

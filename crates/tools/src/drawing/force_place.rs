@@ -74,7 +74,10 @@ impl ForcePlace {
             let effort = ForceQuantity::Effort(DriverId(index));
             (ForceKind::Effort, along(&driver.coordinate, effort))
         });
-        let loads = mechanism.forces.iter().enumerate().map(|(index, force)| {
+        // Friction in cams, curves and links acts along no coordinate that a picture could point at.
+        let shown = mechanism.forces.iter().enumerate();
+        let shown = shown.filter(|(_, force)| force.load.slides().is_none());
+        let loads = shown.map(|(index, force)| {
             let load = match &force.load {
                 Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
                     along(coordinate, ForceQuantity::Applied(index, 0))

@@ -96,7 +96,7 @@ impl Contour {
     }
 
     /// Returns the moving cam's marker, the vector from its point to the contact, and the tangent.
-    pub(super) fn along<N: Moving>(
+    pub(in crate::kinematics::constraint) fn along<N: Moving>(
         &self,
         at: &VariedMechanism<'_, '_, N>,
     ) -> (VariedMarker<N>, [N; 2], [N; 2]) {

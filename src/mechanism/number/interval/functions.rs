@@ -146,6 +146,10 @@ impl Number for Interval {
         false
     }
 
+    fn held(self) -> Self {
+        self
+    }
+
     fn at_most(self, other: Self) -> Option<bool> {
         if self.high <= other.low {
             Some(true)

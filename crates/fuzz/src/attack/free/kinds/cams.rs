@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-use super::{DEAD_POINTS, is, log_between};
+use super::{DEAD_POINTS, JAMS, is, log_between};
 use crate::attack::free::case::{Case, Check, Gap};
 use crate::attack::free::text::Text;
 use crate::mutation::Chance;
@@ -167,6 +167,16 @@ pub fn cam_tappet(chance: &mut Chance, mut text: Text) -> Case {
         contour.expression()
     );
     text.joint("touch", "cam", ["cam.O", "tap.F"], &more);
+    let rubs = is(chance, 0.3);
+    if rubs {
+        let coefficient = chance.between(0.05, 0.4);
+        let pin = match follower {
+            "roller" => format!(", radius = {:?}", chance.between(0.1, 0.9) * roller),
+            _ => String::new(),
+        };
+        let entry = format!("{{ joint = 'touch', coefficient = {coefficient:?}{pin} }}");
+        text.add("friction", "rub", &entry);
+    }
     if is(chance, 0.3) {
         let most = start + chance.between(0.001, 0.05);
         text.add(
@@ -188,6 +198,7 @@ pub fn cam_tappet(chance: &mut Chance, mut text: Text) -> Case {
     let name = "touch".to_owned();
     Case {
         checks: vec![Check::Gap { name, gap }],
+        refusals: if rubs { JAMS } else { &[] },
         ..Case::new(text.end(duration), duration)
     }
 }
