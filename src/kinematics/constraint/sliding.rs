@@ -23,7 +23,7 @@ pub struct Sliding {
     pub from: MarkerId,
     /// Marker j.
     pub to: MarkerId,
-    /// Where they touch.
+    /// Place at which they touch.
     pub contact: SlidingContact,
 }
 

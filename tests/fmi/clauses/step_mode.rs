@@ -383,7 +383,7 @@ fn a_value_that_does_not_exist_ends_nothing() {
          markers = { S = [0, 0] }\nmass = 1\nestimate = [-0.02, 0, 0]\n[joints]\n\
          rail = { type = 'translational', markers = ['ground.O', 'slider.S'] }\n[drivers]\n\
          u = { coordinate = 'x', markers = ['ground.O', 'slider.S'], start = -0.02 }\n[forces]\n\
-         cord = { coordinate = 'distance', markers = ['ground.O', 'slider.S'], stiffness = 3, free = 0 }\n",
+         cord = { coordinate = 'distance', markers = ['ground.O', 'slider.S'], value = -3 }\n",
     );
     let mut instance = start(new_instance(cord, &Heard::default()), agreed(false, false));
     for (n, position) in [-0.01, 0.0, 0.01].into_iter().enumerate() {

@@ -290,7 +290,7 @@ fn a_part_hops_on_a_conveyor() {
     assert_eq!(events[0].kind, EventKind::Leaves);
 }
 
-/// Where nothing moves it aside, it hops on its place.
+/// A part that nothing moves aside hops on its place.
 #[test]
 fn a_part_hops_on_its_place() {
     let mut run = Run::new(&parse(&conveyor(90.0, 0.0)), 1e-10, Fed::default());
