@@ -26,7 +26,11 @@ enum ActiveBound {
 }
 
 /// Returns x for `w` and `b`, with bounds `[lower, upper]` that have 0 in them. `noise` is the part of
-/// each `b` that is rounding. `None` where no forces obey: contacts press on what does not give way.
+/// each `b` that is rounding.
+///
+/// # Errors
+///
+/// The places of the forces that grow for ever where none obey: contacts press on what does not give way.
 ///
 /// Rows that depend on each other may disagree, where something is driven: no forces make all
 /// c̈ = 0. ½ xᵀ W x + bᵀ x falls for ever then along an n with W n = 0, so that the forces go along it
@@ -39,7 +43,7 @@ pub(super) fn solve(
     b: &[f64],
     bounds: &[[f64; 2]],
     noise: &[f64],
-) -> Option<DVector<f64>> {
+) -> Result<DVector<f64>, Vec<usize>> {
     let count = b.len();
     let mut x = DVector::zeros(count);
     let mut places: Vec<ActiveBound> = bounds
@@ -52,9 +56,7 @@ pub(super) fn solve(
         .collect();
     // Far more steps than any set of forces takes.
     for _ in 0..16 * count * count + 16 {
-        if !descend(w, (b, noise), bounds, &mut x, &mut places) {
-            return None;
-        }
+        descend(w, (b, noise), bounds, &mut x, &mut places)?;
         let gradient = w * &x;
         let scale = |k: usize| {
             let row = w.row(k);
@@ -89,18 +91,21 @@ pub(super) fn solve(
             None => break,
         }
     }
-    Some(x)
+    Ok(x)
 }
 
 /// Moves the forces between their bounds to the minimum; those that meet a bound on the way stay there.
-/// Returns whether there is a minimum.
+///
+/// # Errors
+///
+/// The forces that grow for ever where there is no minimum.
 fn descend(
     w: &DMatrix<f64>,
     (b, noise): (&[f64], &[f64]),
     bounds: &[[f64; 2]],
     x: &mut DVector<f64>,
     places: &mut [ActiveBound],
-) -> bool {
+) -> Result<(), Vec<usize>> {
     loop {
         let free: Vec<usize> = (0..b.len())
             .filter(|&k| places[k] == ActiveBound::Between)
@@ -122,13 +127,15 @@ fn descend(
             }
         }
         if part == f64::INFINITY {
-            return false;
+            let grows = free.iter().zip(&target);
+            let grows = grows.filter(|(k, target)| **target != x[**k]);
+            return Err(grows.map(|(&k, _)| k).collect());
         }
         for (&k, target) in free.iter().zip(&target) {
             x[k] += part * (target - x[k]);
         }
         let Some((k, bound, place)) = met else {
-            return true;
+            return Ok(());
         };
         (x[k], places[k]) = (bound, place);
     }
@@ -246,10 +253,11 @@ mod tests {
     #[test]
     fn contacts_that_squeeze_have_no_forces() {
         let w = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.0]);
-        assert!(solve(&w, &[-1.0, -1.0], &[PUSH, PUSH], &[0.0; 2]).is_none());
-        assert!(solve(&w, &[-1.0, 2.0], &[PUSH, PUSH], &[0.0; 2]).is_some());
+        let squeezed = solve(&w, &[-1.0, -1.0], &[PUSH, PUSH], &[0.0; 2]);
+        assert_eq!(squeezed, Err(vec![0, 1]));
+        assert!(solve(&w, &[-1.0, 2.0], &[PUSH, PUSH], &[0.0; 2]).is_ok());
         let still = DMatrix::zeros(1, 1);
-        assert!(solve(&still, &[-1.0], &[PUSH], &[0.0]).is_none());
+        assert!(solve(&still, &[-1.0], &[PUSH], &[0.0]).is_err());
     }
 
     /// The conditions hold for many random forces: they have no other solution for c̈.

@@ -69,6 +69,18 @@ pub enum Error {
         /// Kind and name of each stop and joint that is struck.
         contacts: Vec<String>,
     },
+    /// Contacts press on what none of the freedoms moves.
+    #[error(
+        "t = {} s: the free motion cannot go on: {} squeeze what is between them",
+        fixed(*.time, 9),
+        .contacts.join(" and ")
+    )]
+    Squeezed {
+        /// The instant \[s\].
+        time: f64,
+        /// Kind and name of each stop, joint and contact of shapes.
+        contacts: Vec<String>,
+    },
     /// The energy of a step is not that of the work done, however short the step.
     #[error(
         "t = {} s: the free motion cannot go on: its energy changes by {} J without a cause, with {} J in \

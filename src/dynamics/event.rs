@@ -1,13 +1,14 @@
 //! Events of a free motion, and how they are called.
 
-use crate::mechanism::{Force, Load, Mechanism, fixed, shown};
+use crate::mechanism::{Coordinate, Force, Load, Mechanism, fixed, shown};
 
 /// An event of a free motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
     /// Time \[s\].
     pub time: f64,
-    /// Index of the force of the stop or of friction in the mechanism.
+    /// Index of the force of the stop or of friction in the mechanism, of a contact that of its first
+    /// element.
     pub force: usize,
     /// Its kind.
     pub kind: EventKind,
@@ -16,7 +17,7 @@ pub struct Event {
 /// Kinds of events.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
-    /// A coordinate meets a stop.
+    /// A coordinate meets a stop, or two shapes meet.
     Impact {
         /// Speed before \[m/s or rad/s\].
         speed: f64,
@@ -47,8 +48,8 @@ impl EventKind {
 
 /// Kinds of what meets at a contact: each has words of its own.
 pub(super) enum Meeting {
-    /// A coordinate and its stop.
-    Stop,
+    /// A coordinate and its stop, or two shapes; the word for it.
+    Stop(&'static str),
     /// The ends of a rope, as it is pulled taut.
     Rope,
     /// The two parts of another joint with play.
@@ -59,7 +60,10 @@ impl Meeting {
     /// Returns what meets where a passive force acts.
     pub(super) fn of(load: &Load, mechanism: &Mechanism) -> Self {
         match load.play().map(|joint| &mechanism.joints[joint]) {
-            None => Self::Stop,
+            None => Self::Stop(match load.coordinate().and_then(Coordinate::shapes) {
+                Some(_) => "contact",
+                None => "stop",
+            }),
             Some(joint) if joint.rope().is_some() => Self::Rope,
             Some(_) => Self::Parts,
         }
@@ -78,11 +82,11 @@ impl Event {
             format!("{}{unit}", shown(speed))
         };
         let happens = match (self.kind, Meeting::of(load, mechanism)) {
-            (EventKind::Impact { speed: before }, Meeting::Stop) => {
-                format!("impact at stop `{name}` with {}", speed(before))
+            (EventKind::Impact { speed: before }, Meeting::Stop(stop)) => {
+                format!("impact at {stop} `{name}` with {}", speed(before))
             }
-            (EventKind::Rests, Meeting::Stop) => format!("rest at stop `{name}`"),
-            (EventKind::Leaves, Meeting::Stop) => format!("stop `{name}` is left"),
+            (EventKind::Rests, Meeting::Stop(stop)) => format!("rest at {stop} `{name}`"),
+            (EventKind::Leaves, Meeting::Stop(stop)) => format!("{stop} `{name}` is left"),
             (EventKind::Impact { speed: before }, Meeting::Rope) => {
                 format!("rope `{name}` pulls taut with {}", speed(before))
             }

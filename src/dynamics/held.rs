@@ -2,6 +2,7 @@
 
 use super::event::Meeting;
 use super::motion::FreeMotion;
+use super::passive::Mode;
 use crate::mechanism::{Force, Mechanism, shown};
 
 /// A contact that pushes, or friction that sticks.
@@ -35,7 +36,7 @@ impl Held {
                 "friction `{name}` sticks, {size}{unit} of up to {}{unit}",
                 shown(limit)
             ),
-            (None, Meeting::Stop) => format!("on stop `{name}`, {push}{unit}"),
+            (None, Meeting::Stop(stop)) => format!("on {stop} `{name}`, {push}{unit}"),
             (None, Meeting::Rope) => format!("rope `{name}` is taut, {push}{unit}"),
             (None, Meeting::Parts) => format!("the parts of joint `{name}` touch, {push}{unit}"),
         }
@@ -43,13 +44,32 @@ impl Held {
 }
 
 impl FreeMotion {
+    /// Returns the number of places at which a contact touches at the accepted point, by the index of its
+    /// stop.
+    pub(super) fn touching(&self, mechanism: &Mechanism, stop: usize) -> u32 {
+        let shapes = mechanism.stops[stop].coordinate.shapes();
+        let passive = &self.equations.passive;
+        let all = passive.list.iter().zip(&passive.modes);
+        let touching =
+            all.filter(|(own, mode)| own.coordinate.shapes() == shapes && **mode != Mode::Free);
+        touching.map(|_| 1).sum()
+    }
+
     /// Returns the contacts and frictions that hold coordinates at the accepted point.
     #[must_use]
     pub fn held(&self) -> Vec<Held> {
         let passive = &self.equations.passive;
         let points = self.equations.accepted.passive.iter().enumerate();
         let held = points.filter(|(k, _)| passive.is_held(*k) && self.equations.moves(*k));
-        held.map(|(k, at)| self.holding(k, at.force)).collect()
+        let mut list: Vec<Held> = Vec::new();
+        for own in held.map(|(k, at)| self.holding(k, at.force)) {
+            // A contact has the sum of its elements.
+            match list.last_mut().filter(|last| last.force == own.force) {
+                Some(last) => last.size += own.size,
+                None => list.push(own),
+            }
+        }
+        list
     }
 
     /// Returns what a passive force holds with this size.
@@ -57,7 +77,7 @@ impl FreeMotion {
         let passive = &self.equations.passive.list[force];
         let at = &self.equations.accepted.passive[force];
         Held {
-            force: passive.index,
+            force: self.equations.passive.told(force),
             size,
             limit: passive.cause.friction().map(|_| at.bounds[1]),
         }

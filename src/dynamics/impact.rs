@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::bounded;
 use super::equations::Equations;
 use super::error::Error;
-use super::event::{Event, EventKind};
+use super::event::{Event, EventKind, Meeting};
 use super::given::Given;
 use super::passive::{Mode, TOUCHED};
 use super::settle::Touch;
@@ -31,6 +31,15 @@ struct Hit {
     restitution: f64,
     /// Whether it comes to rest, as its bounces are beneath rounding.
     rests: bool,
+    /// Whether it only takes over from another place of its contact.
+    takes_over: bool,
+}
+
+impl Hit {
+    /// Returns whether the impact is told, if there is an impulse.
+    fn tells(&self) -> bool {
+        self.closes && !self.rests && !self.takes_over
+    }
 }
 
 /// Forces or impulses that act along some coordinates.
@@ -72,6 +81,7 @@ impl Equations {
                     0.0
                 },
                 rests: false,
+                takes_over: self.takes_over(*touch, &touches),
             });
             let mut hits: Vec<Hit> = hits.collect();
             self.share_restitution(solver.mechanism(), &mut hits);
@@ -93,24 +103,52 @@ impl Equations {
             }
             x[2 * self.freedoms.len()] += self.point.energy - energy;
             let struck = hits.iter().zip(&impulses);
-            let struck =
-                struck.filter(|(hit, impulse)| **impulse > 0.0 && hit.closes && !hit.rests);
-            events.extend(struck.map(|(hit, _)| Event {
-                time,
-                force: self.passive.list[hit.touch.force].index,
-                kind: EventKind::Impact { speed: hit.speed },
-            }));
+            let struck = struck.filter(|(hit, impulse)| **impulse > 0.0 && hit.tells());
+            let first = events.len();
+            for (hit, _) in struck {
+                let force = self.passive.told(hit.touch.force);
+                let event = events[first..].iter_mut().find(|own| own.force == force);
+                match event.map(|own| &mut own.kind) {
+                    // A contact is struck once, with the largest of the speeds at its places.
+                    Some(EventKind::Impact { speed }) => *speed = speed.max(hit.speed),
+                    _ => events.push(Event {
+                        time,
+                        force,
+                        kind: EventKind::Impact { speed: hit.speed },
+                    }),
+                }
+            }
         }
-        let mechanism = solver.mechanism();
-        let struck = self.touches().into_iter().map(|touch| {
-            let Force { name, load, .. } = &mechanism.forces[self.passive.list[touch.force].index];
-            let kind = load.play().map_or("stop", |_| "joint");
-            format!("{kind} `{name}`")
-        });
         Err(Error::EndlessImpacts {
             time,
-            contacts: struck.collect(),
+            contacts: self.names(solver, self.touches()),
         })
+    }
+
+    /// Returns whether a place of a contact closes as slowly as what counts as touched does, while another
+    /// place of it is touched: the contact passes from one to the other.
+    fn takes_over(&self, touch: Touch, touches: &[Touch]) -> bool {
+        let [speed, acceleration] = self.opening(touch);
+        let height = TOUCHED * self.at(touch).gap_rounding();
+        let group = &self.passive.list[touch.force].group;
+        let is_other = |other: &Touch| other.force != touch.force && group.contains(&other.force);
+        speed * speed <= 2.0 * acceleration.abs() * height && touches.iter().any(is_other)
+    }
+
+    /// Returns kind and name of contacts, each once.
+    fn names(&self, solver: &Solver, touches: impl IntoIterator<Item = Touch>) -> Vec<String> {
+        let mechanism = solver.mechanism();
+        let names = touches.into_iter().map(|touch| {
+            let Force { name, load, .. } = &mechanism.forces[self.passive.list[touch.force].index];
+            let kind = match Meeting::of(load, mechanism) {
+                Meeting::Stop(kind) => kind,
+                Meeting::Rope | Meeting::Parts => "joint",
+            };
+            format!("{kind} `{name}`")
+        });
+        let mut names: Vec<String> = names.collect();
+        names.dedup();
+        names
     }
 
     /// Lets stops of one coordinate that are met together bounce with the smallest of their
@@ -162,8 +200,17 @@ impl Equations {
             let of_others = own.column(0).dot(&(&press.columns * &press.forces));
             let fall = acceleration + hit.touch.side.sign() * of_others;
             if fall < 0.0 && speed * speed <= -2.0 * fall * lowest(hit) {
-                // Each bounce lasts 2 v / a, and the next one is slower by the restitution.
-                rest[hit.touch.force] = -2.0 * speed / fall / (1.0 - hit.restitution);
+                // Each bounce lasts 2 v / a, and the next one is slower by the restitution, or as this one is
+                // slower than the blow at another place of the contact that has opened it.
+                let group = &self.passive.list[hit.touch.force].group;
+                let blows = hits
+                    .iter()
+                    .filter(|other| group.contains(&other.touch.force));
+                let blow = blows.filter(|other| other.closes && !hit.closes);
+                let slower = blow
+                    .map(|other| speed / other.speed)
+                    .fold(hit.restitution, f64::max);
+                rest[hit.touch.force] = -2.0 * speed / fall / (1.0 - slower);
                 tired.push(k);
             }
         }
@@ -241,7 +288,8 @@ impl Equations {
     ///
     /// # Errors
     ///
-    /// [`Error::Stop`] where contacts press on what does not give way.
+    /// [`Error::Stop`] where a contact presses on what does not give way, [`Error::Squeezed`] where shapes are
+    /// between several.
     pub(super) fn press(
         &self,
         solver: &Solver,
@@ -269,8 +317,21 @@ impl Equations {
         let bounds: Vec<[f64; 2]> = pushes.chain(holds).collect();
         let noise = some.iter().map(|&k| self.point.passive[k].slow(order));
         let noise: Vec<f64> = noise.collect();
-        if let Some(forces) = bounded::solve(&compliance, rates, &bounds, &noise) {
-            return Ok(Press { forces, columns });
+        let pressed = match bounded::solve(&compliance, rates, &bounds, &noise) {
+            Ok(forces) => return Ok(Press { forces, columns }),
+            Err(pressed) => pressed,
+        };
+        let pressed = pressed.into_iter().filter_map(|k| touches.get(k).copied());
+        let pressed: Vec<Touch> = pressed.collect();
+        let has_shapes = |touch: &Touch| {
+            let coordinate = &self.passive.list[touch.force].coordinate;
+            coordinate.shapes().is_some()
+        };
+        let names = self.names(solver, pressed.iter().copied());
+        if names.len() > 1 && pressed.iter().any(has_shapes) {
+            let time = solver.pose().time;
+            let contacts = names;
+            return Err(Error::Squeezed { time, contacts });
         }
         let closing = touches.iter().zip(rates);
         let worst = closing.min_by(|(_, a), (_, b)| a.total_cmp(b));

@@ -339,8 +339,8 @@ impl FreeMotion {
             passive, accepted, ..
         } = &self.equations;
         let is_inside = |event: &Event| {
-            let mut all = passive.list.iter().zip(&accepted.passive);
-            all.any(|(force, at)| force.index == event.force && at.is_inside())
+            let mut all = accepted.passive.iter().enumerate();
+            all.any(|(k, at)| passive.told(k) == event.force && at.is_inside())
         };
         self.events
             .retain(|event| matches!(event.kind, EventKind::Impact { .. }) && is_inside(event));
@@ -566,12 +566,14 @@ impl FreeMotion {
             forces,
             ..
         } = &self.equations;
-        let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
-        if let Some(turn) = index.checked_sub(passive.list.len() * FUNCTIONS) {
+        let (place, side) = (index / FUNCTIONS, index % FUNCTIONS);
+        let Some(group) = passive.groups().nth(place) else {
+            let turn = index - passive.groups().count() * FUNCTIONS;
             return turns.indicator(turn, forces.corners());
-        }
-        let function = passive.function(force, &point.passive[force], side);
-        function.map_or(1.0, |function| function.indicator())
+        };
+        let functions = group.filter_map(|k| passive.function(k, &point.passive[k], side));
+        let indicators = functions.map(|function| function.indicator());
+        indicators.reduce(f64::min).unwrap_or(1.0)
     }
 
     /// Returns whether held coordinates are off the places where they are held, at the last point at

@@ -148,6 +148,14 @@ impl Motion {
         self.free.as_ref().map(|free| &free.motion)
     }
 
+    /// Returns the number of places at which a contact touches, by the index of its stop; zero where all is
+    /// driven.
+    #[must_use]
+    pub fn touching(&self, stop: usize) -> u32 {
+        self.free()
+            .map_or(0, |free| free.touching(self.solver.mechanism(), stop))
+    }
+
     /// Returns the motion of freedoms, if there are some, with the solver that it moves and the solution.
     pub fn parts(&mut self) -> Option<(&mut FreeMotion, &mut Solver, &mut Solution)> {
         let free = self.free.as_mut()?;

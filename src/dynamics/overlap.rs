@@ -64,7 +64,7 @@ pub(super) fn describe(depths: &[(usize, f64)], mechanism: &Mechanism) -> String
         let (factor, unit) = display(coordinate.kind);
         let depth = format!("{} {unit}", shown(depth * factor));
         match Meeting::of(load, mechanism) {
-            Meeting::Stop => format!("stop `{name}` is passed by {depth}"),
+            Meeting::Stop(stop) => format!("{stop} `{name}` is passed by {depth}"),
             Meeting::Rope => format!("rope `{name}` is too short by {depth}"),
             Meeting::Parts => format!("the parts of joint `{name}` overlap by {depth}"),
         }

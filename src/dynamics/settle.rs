@@ -93,25 +93,37 @@ impl Equations {
         let rest = self.bounce(solver, given, time, x, events)?;
         self.choose(solver, given, time, x, &before)?;
         self.project(solver, given, time, x)?;
-        for (k, before) in before.into_iter().enumerate() {
-            let after = self.passive.modes[k];
+        for k in 0..before.len() {
+            let (from, to) = (before[k], self.passive.modes[k]);
             let own = &self.passive.list[k];
-            let event = own.cause.event(before, after, &self.point.passive[k]);
-            let Some(kind) = event.filter(|_| before != after) else {
+            let event = own.cause.event(from, to, &self.point.passive[k]);
+            let later = rest[own.group.clone()].iter().copied().fold(0.0, f64::max);
+            // A contact that was touched at another place rests where it ceases to change them.
+            let tells = || self.tells(k, &before) || later > 0.0 && own.group.len() > 1;
+            let Some(kind) = event.filter(|_| from != to && tells()) else {
                 continue;
             };
-            let later = if kind == EventKind::Rests {
-                rest[k]
-            } else {
-                0.0
-            };
+            let later = if kind == EventKind::Rests { later } else { 0.0 };
             events.push(Event {
                 time: time + later,
-                force: self.passive.list[k].index,
+                force: self.passive.told(k),
                 kind,
             });
         }
         Ok(())
+    }
+
+    /// Returns whether the change of a passive force is one of its contact: the first place that touches, or
+    /// the last one that is left.
+    fn tells(&self, force: usize, before: &[Mode]) -> bool {
+        let group = self.passive.list[force].group.clone();
+        if group.len() == 1 {
+            return true;
+        }
+        let now = &self.passive.modes;
+        let touches = |modes: &[Mode]| modes[group.clone()].iter().any(|mode| *mode != Mode::Free);
+        let mut changed = group.clone().filter(|&k| before[k] != now[k]);
+        touches(before) != touches(now) && changed.next() == Some(force)
     }
 
     /// Opens all contacts, and leaves friction undecided where its coordinate rests; elsewhere it slides

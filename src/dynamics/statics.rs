@@ -289,7 +289,8 @@ impl Statics {
         let bounds = vec![[0.0, f64::INFINITY]; sides.len()];
         let noise: Vec<f64> = sides.iter().map(|side| side.rounding).collect();
         let mut compliance = rows.tr_mul(&responses);
-        let solve = |w: &DMatrix<f64>| bounded::solve(w, predicted.as_slice(), &bounds, &noise);
+        let solve =
+            |w: &DMatrix<f64>| bounded::solve(w, predicted.as_slice(), &bounds, &noise).ok();
         let found = solve(&compliance).unwrap_or_else(|| {
             // No step closes all gaps that are linear: contacts that yield a little share the rest.
             let yields = YIELDING * compliance.trace();

@@ -201,13 +201,15 @@ impl Watch {
     }
 }
 
-/// Returns the event indicators of a mechanism, each by the index of its force.
+/// Returns the event indicators of a mechanism, each by the index of its force; of a contact the least of its
+/// elements.
 pub fn event_indicators(mechanism: &Mechanism) -> Vec<usize> {
     let forces = mechanism.forces.iter().enumerate();
     let is_elastic = |load: &Load| load.law().is_some_and(|law| law.stop.is_some());
     let passive = forces
         .filter(|(_, force)| matches!(force.load, Load::Passive { .. }) || is_elastic(&force.load));
-    let indicators = passive.flat_map(|(index, _)| [index; FUNCTIONS]);
+    let first = passive.filter(|(index, _)| mechanism.elements_with(*index).start == *index);
+    let indicators = first.flat_map(|(index, _)| [index; FUNCTIONS]);
     let forces = mechanism.forces.iter().enumerate();
     let turns = forces.flat_map(|(index, force)| vec![index; 2 * force.load.corners()]);
     let indicators = indicators.chain(turns);

@@ -26,7 +26,7 @@ use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{
     BodyId, Coordinate, DriverId, Indeterminate, Jet, Load, MarkerId, Mechanism, Order,
-    ParameterId, PrescribedMotion, ShapeId,
+    ParameterId, PrescribedMotion, Run, ShapeId,
 };
 
 /// Solves position, velocity and acceleration of one mechanism.
@@ -388,7 +388,8 @@ impl Solver {
     /// \[m\]; `None` for shapes that no measure and no contact names.
     #[must_use]
     pub fn clearance(&self, shapes: [ShapeId; 2]) -> Option<(f64, [[f64; 2]; 2])> {
-        let clearance = Clearance { shapes };
+        let runs = [Run::WHOLE; 2];
+        let clearance = Clearance { shapes, runs };
         let places = clearance.places(&self.state.at)?;
         Some((clearance.value(&self.state.at), places.map(Into::into)))
     }

@@ -1,10 +1,10 @@
 //! Shapes within a mechanism: their names, the masses that they give bodies, and their faults.
 
 use super::number::Number;
-use super::shape::Given;
+use super::shape::{Elements, Given, elements};
 use super::{
-    Body, BodyId, Coordinate, Expression, MarkerId, Mechanism, ParameterId, Piece, Section, Shape,
-    ShapeFault, ShapeFaultKind, ShapeForm, ShapeId, Weight,
+    Body, BodyId, Coordinate, CoordinateKind, Expression, MarkerId, Mechanism, ParameterId, Piece,
+    Section, Shape, ShapeFault, ShapeFaultKind, ShapeForm, ShapeId, Weight,
 };
 
 impl Body {
@@ -35,6 +35,42 @@ impl Mechanism {
             .chain(stops)
             .filter_map(Coordinate::shapes)
             .any(|shapes| shapes.contains(&id))
+    }
+
+    /// Returns the elements of the contact of two shapes for these parameters.
+    pub(super) fn elements(&self, shapes: [ShapeId; 2], parameters: &[f64]) -> Elements {
+        let parameter = |id: ParameterId| parameters[id.index()];
+        let shapes = shapes.map(|id| &self.shapes[id.index()]);
+        self.on_bodies(&parameter, |given| elements(shapes, given))
+    }
+
+    /// Adds the forces of all contacts behind the others, one per element. The elements are those for the
+    /// default values of parameters.
+    pub(super) fn add_forces_of_contacts(&mut self) {
+        let parameters = self.default_parameters();
+        let has_freedoms = self.has_freedoms();
+        let mut forces = Vec::new();
+        for (index, stop) in self.stops.iter().enumerate() {
+            let Some(shapes) = stop
+                .coordinate
+                .shapes()
+                .filter(|_| stop.exerts(has_freedoms))
+            else {
+                continue;
+            };
+            let elements = self.elements(shapes, &parameters).runs.into_iter();
+            forces.extend(elements.map(|runs| {
+                let kind = CoordinateKind::Clearance(shapes, runs);
+                stop.force(
+                    index,
+                    Coordinate {
+                        kind,
+                        ..stop.coordinate
+                    },
+                )
+            }));
+        }
+        self.forces.extend(forces);
     }
 
     /// Returns the shapes of a body, of ground for `None`.

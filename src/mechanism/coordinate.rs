@@ -1,7 +1,7 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{Driver, DriverId, DriverSource, MarkerId, Mechanism, Order, ShapeId, Unit};
+use super::{Driver, DriverId, DriverSource, MarkerId, Mechanism, Order, Run, ShapeId, Unit};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ impl Coordinate {
     #[must_use]
     pub fn shapes(&self) -> Option<[ShapeId; 2]> {
         match self.kind {
-            CoordinateKind::Clearance(shapes) => Some(shapes),
+            CoordinateKind::Clearance(shapes, _) => Some(shapes),
             _ => None,
         }
     }
@@ -44,7 +44,7 @@ impl Coordinate {
             CoordinateKind::X => cos * dx + sin * dy,
             CoordinateKind::Y => cos * dy - sin * dx,
             CoordinateKind::Distance => dx.hypot(dy),
-            CoordinateKind::Clearance(_) => unreachable!("no freedom is a clearance"),
+            CoordinateKind::Clearance(..) => unreachable!("no freedom is a clearance"),
         }
     }
 
@@ -62,7 +62,7 @@ impl Coordinate {
             CoordinateKind::X => format!("x from `{from}` to `{to}`{on_axes}"),
             CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
             CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
-            CoordinateKind::Clearance(shapes) => {
+            CoordinateKind::Clearance(shapes, _) => {
                 let [a, b] = shapes.map(|id| mechanism.shape_path(id));
                 format!("the clearance of `{a}` and `{b}`")
             }
@@ -151,8 +151,9 @@ pub enum CoordinateKind {
     Y,
     /// `‖P_j − P_i‖` \[m\].
     Distance,
-    /// Least distance of the outlines of two shapes \[m\]. The markers are the first ones of both.
-    Clearance([ShapeId; 2]),
+    /// Least distance of the outlines of two shapes, as far as runs of their features make them \[m\]. The
+    /// markers are the first ones of both.
+    Clearance([ShapeId; 2], [Run; 2]),
 }
 
 impl CoordinateKind {
@@ -177,7 +178,7 @@ impl CoordinateKind {
             Self::X => "x",
             Self::Y => "y",
             Self::Distance => "distance",
-            Self::Clearance(_) => "clearance",
+            Self::Clearance(..) => "clearance",
         }
     }
 
@@ -196,7 +197,7 @@ impl CoordinateKind {
     pub fn has_axes(self) -> bool {
         match self {
             Self::X | Self::Y => true,
-            Self::Angle | Self::Distance | Self::Clearance(_) => false,
+            Self::Angle | Self::Distance | Self::Clearance(..) => false,
         }
     }
 
@@ -205,7 +206,7 @@ impl CoordinateKind {
     pub fn is_angle(self) -> bool {
         match self {
             Self::Angle => true,
-            Self::X | Self::Y | Self::Distance | Self::Clearance(_) => false,
+            Self::X | Self::Y | Self::Distance | Self::Clearance(..) => false,
         }
     }
 

@@ -1,5 +1,7 @@
 //! Forces on a mechanism, besides gravity.
 
+use std::ops::Range;
+
 use super::friction::{Bearing, FrictionLaw, SlidingWay};
 use super::{
     Body, Coordinate, Expression, MarkerId, Mechanism, Number, Order, ParameterId, Signal, Unit,
@@ -176,11 +178,28 @@ impl Mechanism {
         self.force_components(Load::is_input)
     }
 
-    /// Returns the components of the forces whose sizes are no inputs. Joints with play have their
-    /// reactions instead.
+    /// Returns the forces at the elements of a contact, of which one has this index; for any other force
+    /// this one alone.
+    #[must_use]
+    pub fn elements_with(&self, force: usize) -> Range<usize> {
+        let shapes = |k: usize| self.forces[k].load.coordinate()?.shapes();
+        let Some(own) = shapes(force) else {
+            return force..force + 1;
+        };
+        let is_one = |k: &usize| shapes(*k) == Some(own);
+        let first = (0..force).rev().take_while(is_one).last();
+        let last = (force..self.forces.len()).take_while(is_one).last();
+        first.unwrap_or(force)..last.map_or(force, |last| last + 1)
+    }
+
+    /// Returns the components of the forces whose sizes are no inputs, of a contact that of all its
+    /// elements. Joints with play have their reactions instead.
     #[must_use]
     pub fn given_forces(&self) -> Vec<ForceComponent> {
-        self.force_components(|load| !load.is_input() && load.play().is_none())
+        let is_given = |load: &Load| !load.is_input() && load.play().is_none();
+        let components = self.force_components(is_given).into_iter();
+        let is_first = |own: &ForceComponent| self.elements_with(own.force).start == own.force;
+        components.filter(is_first).collect()
     }
 
     fn force_components(&self, is_wanted: impl Fn(&Load) -> bool) -> Vec<ForceComponent> {
@@ -230,7 +249,11 @@ impl Force {
             load @ (Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. }) => {
                 let word = coordinate.kind.effort_word();
                 let along = coordinate.describe(mechanism);
-                format!("{word}{} along {along}", load.origin())
+                let origin = match coordinate.shapes() {
+                    Some(_) => " of a contact",
+                    None => load.origin(),
+                };
+                format!("{word}{origin} along {along}")
             }
             Load::Marker { marker, .. } => {
                 format!("force and torque at `{}`", mechanism.marker_path(*marker))

@@ -24,6 +24,8 @@ pub enum ForceQuantity {
     Share(usize, usize),
     /// Size of a force, by its index: the effort along its coordinate, or a component at its marker.
     Applied(usize, usize),
+    /// Sum of the efforts of the forces from one index to another, at all elements of a contact \[N\].
+    Pushes(usize, usize),
     /// Kinetic energy of all bodies \[J\].
     KineticEnergy,
     /// Potential energy of gravity and springs \[J\].

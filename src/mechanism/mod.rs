@@ -102,8 +102,8 @@ pub(crate) use rope::MOST_BODIES;
 pub use rope::{Pulley, PulleySide, Rope, RopePoint};
 pub use setting::{Extrapolation, RateSource};
 pub use shape::{
-    Core, Feature, FeatureKind, OutlineCorner, Piece, Section, Shape, ShapeFault, ShapeFaultKind,
-    ShapeForm, Weight,
+    Core, Feature, FeatureKind, OutlineCorner, Piece, Run, Section, Shape, ShapeFault,
+    ShapeFaultKind, ShapeForm, Weight,
 };
 pub(crate) use signal::SUFFIXES;
 pub use signal::{COMPONENTS, Order, Signal};

@@ -75,13 +75,21 @@ pub struct NamedForce {
     pub quantity: ForceQuantity,
 }
 
-impl From<ForceComponent> for NamedForce {
-    fn from(component: ForceComponent) -> Self {
+impl NamedForce {
+    /// Names the component of a force, of a contact the sum over all its elements.
+    #[must_use]
+    pub fn of(component: ForceComponent, mechanism: &Mechanism) -> Self {
+        let elements = mechanism.elements_with(component.force);
+        let quantity = if elements.len() > 1 {
+            ForceQuantity::Pushes(elements.start, elements.end)
+        } else {
+            ForceQuantity::Applied(component.force, component.component)
+        };
         Self {
             name: component.name,
             description: component.description,
             unit: component.unit,
-            quantity: ForceQuantity::Applied(component.force, component.component),
+            quantity,
         }
     }
 }
@@ -96,8 +104,8 @@ impl Mechanism {
         if self.has_dynamics() {
             list.add_drivers(self);
             list.add_reactions(self);
-            list.0
-                .extend(self.given_forces().into_iter().map(NamedForce::from));
+            let given = self.given_forces().into_iter();
+            list.0.extend(given.map(|own| NamedForce::of(own, self)));
             list.add_energies();
         }
         list.0

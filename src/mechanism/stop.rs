@@ -73,10 +73,14 @@ impl Stop {
             .unwrap_or_else(|| self.coordinate.kind.word())
     }
 
-    /// Returns the force that the stop, which has this index, exerts: an elastic one by its law, a
-    /// rigid one as the motion demands.
-    pub(super) fn force(&self, index: usize) -> Force {
-        let coordinate = self.coordinate;
+    /// Returns whether it exerts a force: a rigid stop does not where all is driven, as the motion ends there.
+    pub(super) fn exerts(&self, has_freedoms: bool) -> bool {
+        has_freedoms || !self.is_rigid()
+    }
+
+    /// Returns the force that the stop, which has this index, exerts along its coordinate or one of its
+    /// elements: an elastic one by its law, a rigid one as the motion demands.
+    pub(super) fn force(&self, index: usize, coordinate: Coordinate) -> Force {
         let load = match &self.contact {
             StopContact::Rigid { .. } => Load::Passive {
                 coordinate,

@@ -9,6 +9,7 @@ mod differences;
 mod budget;
 mod c_host;
 mod clauses;
+mod contacts;
 mod fmu_state;
 mod free;
 mod hostile;

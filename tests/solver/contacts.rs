@@ -267,12 +267,16 @@ fn contacts_that_cannot_be_are_refused() {
         let problems = Mechanism::parse(&source).expect_err("it is wrong");
         problems[0].one_line(&source)
     };
-    let good = "hit = { shapes = ['bar.arm', 'ground.post'] }";
     for (contacts, moved, message) in [
         (
-            good,
+            "hit = { shapes = ['bar.tip', 'ground.post'], stiffness = 1e5, restitution = 0.2 }",
             "freedoms",
-            "the contact `hit` acts in driven motion only",
+            "contact `hit` has both `stiffness` and `restitution`",
+        ),
+        (
+            "hit = { shapes = ['bar.arm', 'ground.sharp'], stiffness = 1e5 }",
+            "drivers",
+            "the contact `hit` of `bar.arm` and `ground.sharp` cannot have a `stiffness`",
         ),
         (
             "hit = { shapes = ['bar.tip', 'ground.sharp'] }",

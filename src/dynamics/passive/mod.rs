@@ -15,6 +15,7 @@ mod elastic;
 mod friction;
 
 use std::fmt::Debug;
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
@@ -219,6 +220,8 @@ pub(super) trait Cause: Debug + Send + Sync {
 pub(super) struct PassiveForce {
     /// Index of the force in the mechanism.
     pub(super) index: usize,
+    /// Places of the forces of its contact in the list; its own alone without one.
+    pub(super) group: Range<usize>,
     pub(super) relation: Arc<dyn Constraint>,
     /// The unknowns in the relation, each once.
     pub(super) columns: Vec<usize>,
@@ -281,6 +284,7 @@ impl PassiveForces {
             columns.dedup();
             Some(PassiveForce {
                 index,
+                group: 0..0,
                 relation,
                 columns,
                 coordinate: *coordinate,
@@ -290,6 +294,11 @@ impl PassiveForces {
         let (mut list, elastic): (Vec<_>, Vec<_>) = all.partition(|own| !own.cause.has_law());
         let loads = list.len();
         list.extend(elastic);
+        for k in 0..list.len() {
+            let elements = mechanism.elements_with(list[k].index);
+            let first = k + elements.start - list[k].index;
+            list[k].group = first..first + elements.len();
+        }
         let (count, drivers) = (list.len(), mechanism.drivers.len());
         let friction = solver.friction();
         let mut rubbing: Vec<_> = list.iter().enumerate().collect();
@@ -342,6 +351,18 @@ impl PassiveForces {
         for ((mode, anchor), state) in own.zip(state) {
             (*mode, *anchor) = *state;
         }
+    }
+
+    /// Returns the places of the forces of each contact, and of each other force.
+    pub(super) fn groups(&self) -> impl Iterator<Item = Range<usize>> {
+        let all = self.list.iter().enumerate();
+        let first = all.filter(|(k, own)| own.group.start == *k);
+        first.map(|(_, own)| own.group.clone())
+    }
+
+    /// Returns the index of a force in the mechanism, of a contact that of its first element.
+    pub(super) fn told(&self, force: usize) -> usize {
+        self.list[self.list[force].group.start].index
     }
 
     /// Returns whether some coordinate is held.

@@ -125,12 +125,17 @@ impl<'a> DependencyTable<'a> {
             }
             Quantity::Output(OutputSource::Force(force)) => Some(match force {
                 ForceQuantity::Inertia(_) | ForceQuantity::PotentialEnergy => Order::Position,
-                ForceQuantity::Applied(force, _) if self.is_passive(force) => Order::Acceleration,
+                ForceQuantity::Applied(force, _) | ForceQuantity::Pushes(force, _)
+                    if self.is_passive(force) =>
+                {
+                    Order::Acceleration
+                }
                 ForceQuantity::Bias(_) if self.mechanism.has_joint_friction() => {
                     Order::Acceleration
                 }
                 ForceQuantity::Bias(_)
                 | ForceQuantity::Applied(..)
+                | ForceQuantity::Pushes(..)
                 | ForceQuantity::KineticEnergy => Order::Velocity,
                 ForceQuantity::Effort(_)
                 | ForceQuantity::Power(_)
@@ -139,6 +144,7 @@ impl<'a> DependencyTable<'a> {
                 | ForceQuantity::Held(_) => Order::Acceleration,
             }),
             Quantity::EventIndicator(_) => Some(Order::Acceleration),
+            Quantity::Clearance(_) => Some(Order::Position),
             Quantity::Parameter(id) if self.mechanism.parameters[id.index()].derived => {
                 Some(Order::Position)
             }
@@ -244,7 +250,7 @@ impl<'a> DependencyTable<'a> {
         let uses_time = |load: &Load| load.expressions().iter().any(|e| e.uses(Of::Time));
         let mut own = Vec::new();
         let (count, depends_on_time) = match force {
-            ForceQuantity::Applied(force, _)
+            ForceQuantity::Applied(force, _) | ForceQuantity::Pushes(force, _)
                 if !forces[force].load.is_input() && !self.is_passive(force) =>
             {
                 own = self.inputs_of_load(&forces[force].load);
@@ -349,6 +355,10 @@ impl<'a> DependencyTable<'a> {
             Quantity::State(freedom, _) => {
                 origins.drivers.insert(freedom);
             }
+            Quantity::Clearance(stop) => {
+                let coordinate = &mechanism.stops[stop].coordinate;
+                origins.extend(&structure.coordinate_dependencies(mechanism, coordinate));
+            }
             Quantity::EventIndicator(_) => {
                 self.add_origins(ForceQuantity::KineticEnergy, &mut origins);
             }
@@ -362,7 +372,7 @@ impl<'a> DependencyTable<'a> {
     /// all others on the whole mechanism.
     fn add_origins(&self, force: ForceQuantity, origins: &mut Dependencies) {
         let (mechanism, structure) = (self.mechanism, self.structure);
-        if let ForceQuantity::Applied(force, _) = force
+        if let ForceQuantity::Applied(force, _) | ForceQuantity::Pushes(force, _) = force
             && !self.is_passive(force)
         {
             let load = &mechanism.forces[force].load;

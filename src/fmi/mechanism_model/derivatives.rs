@@ -4,6 +4,7 @@ use super::{MechanismModel, Quantity, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
+use crate::kinematics::constraint::of_coordinate;
 use crate::kinematics::{Direction, OutputSource, Solution};
 use crate::mechanism::{DriverId, Order, Signal};
 
@@ -91,6 +92,10 @@ impl MechanismModel {
                 .ok_or_else(|| sensitivity.fault()),
             Quantity::Output(source) => source.change(&self.mechanism, &sensitivity, forces),
             Quantity::State(freedom, order) => Ok(order.of(direction.drivers[freedom.index()])),
+            Quantity::Clearance(stop) => {
+                let relation = of_coordinate(&self.mechanism.stops[stop].coordinate);
+                Ok(sensitivity.coordinate(&*relation).value)
+            }
             _ => unreachable!("unknowns are outputs, states and parameters"),
         };
         let changes: Result<_, _> = unknowns.iter().map(change).collect();

@@ -460,6 +460,7 @@ impl Model for MechanismModel {
             Quantity::Iterations => self.course.progress.iterations,
             Quantity::Substeps => self.course.progress.substeps,
             Quantity::Proved => u32::from(self.course.progress.checked == 0),
+            Quantity::Touching(stop) => self.motion.touching(stop),
             _ => unreachable!("all other variables are Reals"),
         };
         i32::try_from(count).unwrap_or(i32::MAX)

@@ -90,7 +90,8 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
         }
         Quantity::Output(OutputSource::Signal(signal, order)) => (group_of(signal), order),
         Quantity::State(_, order) => (COORDINATES, order),
-        Quantity::EventIndicator(_) => (COORDINATES, Order::Acceleration),
+        Quantity::Clearance(_) => (COORDINATES, Order::Position),
+        Quantity::EventIndicator(_) | Quantity::Touching(_) => (COORDINATES, Order::Acceleration),
     };
     if order == Order::Position {
         group
@@ -254,6 +255,10 @@ impl MechanismModel {
                 values[place] = free.map_or(1.0, |free| free.event_indicator(index));
                 continue;
             }
+            if let Quantity::Touching(stop) = quantity {
+                values[place] = f64::from(self.motion.touching(stop));
+                continue;
+            }
             let (solver, solution) = (&mut self.motion.solver, &self.motion.solution);
             let (rates, driver_rates) = (&solution.rates, &solution.driver_rates);
             values[place] = match quantity {
@@ -271,6 +276,11 @@ impl MechanismModel {
                     value: solver.pose().drivers[freedom.index()],
                     ..driver_rates[freedom.index()]
                 }),
+                Quantity::Clearance(stop) => {
+                    let shapes = self.mechanism.stops[stop].coordinate.shapes();
+                    let found = shapes.and_then(|shapes| solver.clearance(shapes));
+                    found.map_or(f64::NAN, |(clearance, _)| clearance)
+                }
                 Quantity::Output(OutputSource::Derived(index)) => {
                     solver.derived(index, rates, driver_rates, solution.forces())
                 }

@@ -36,6 +36,10 @@ pub enum Quantity {
     State(DriverId, Order),
     /// An event indicator, by its index.
     EventIndicator(usize),
+    /// Clearance of a contact, by the index of its stop.
+    Clearance(usize),
+    /// Number of places at which a contact touches, by the index of its stop.
+    Touching(usize),
     /// Largest scaled residual of the constraint equations.
     Residual,
     /// Scaled reciprocal condition of the Jacobian.
@@ -55,7 +59,7 @@ pub enum Quantity {
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
 /// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
 /// from others, forces, solver, time, states that are no outputs, event indicators; in the file's
-/// order within each group; the solver's budget, and the inputs of the file at the end.
+/// order within each group; the solver's budget, the inputs of the file, and the contacts at the end.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
     let kept = KeptStart::of(mechanism);
@@ -92,6 +96,7 @@ pub(super) fn variables_of(
     table.add_event_indicators(mechanism);
     table.add_budget(mechanism);
     table.add_load_inputs(mechanism, |target| matches!(target, LoadTarget::Input(_)));
+    table.add_contacts(mechanism);
     table.list
 }
 
@@ -292,6 +297,30 @@ impl Table {
                 (Causality::EventIndicator, Variability::Continuous),
                 Kind::real(None, None),
             );
+        }
+    }
+
+    /// Adds the clearances of contacts, and in free motion the numbers of places that touch.
+    fn add_contacts(&mut self, mechanism: &Mechanism) {
+        let stops = mechanism.stops.iter().enumerate();
+        for (index, stop) in stops.filter(|(_, stop)| stop.coordinate.shapes().is_some()) {
+            let name = &stop.name;
+            self.add(
+                format!("{name}.clearance"),
+                stop.coordinate.describe(mechanism),
+                Quantity::Clearance(index),
+                (Causality::Output, Variability::Continuous),
+                Kind::real(Some(Unit::METRE), None),
+            );
+            if mechanism.has_freedoms() {
+                self.add(
+                    format!("{name}.touching"),
+                    format!("number of places at which contact `{name}` touches"),
+                    Quantity::Touching(index),
+                    (Causality::Local, Variability::Discrete),
+                    Kind::Integer,
+                );
+            }
         }
     }
 

@@ -10,12 +10,13 @@ use super::moving_configuration::{
 };
 use super::point::{angular_velocity, centripetal, point_velocity};
 use super::region::Region;
-use crate::mechanism::{BodyId, Feature, FeatureKind, Mechanism, Number, ShapeForm, ShapeId};
+use crate::mechanism::{BodyId, Feature, FeatureKind, Mechanism, Number, Run, ShapeForm, ShapeId};
 
 #[cfg(test)]
 mod tests;
 
-/// c = the least distance of the cores of two shapes less the radii round them.
+/// c = the least distance of the cores of two shapes, or of runs of their features, less the radii round
+/// them.
 ///
 /// The distance of cores has no sign: c becomes negative as far as the radii reach. It is smooth where the
 /// nearest place of each core moves along one edge or stays at one corner, and has a continuous gradient
@@ -25,6 +26,8 @@ mod tests;
 pub struct Clearance {
     /// The two shapes, on different bodies.
     pub shapes: [ShapeId; 2],
+    /// The features of each core among which the nearest ones are.
+    pub runs: [Run; 2],
 }
 
 /// Features of two cores that are nearest to each other, and the form of their distance.
@@ -180,17 +183,21 @@ fn placed<N: Copy>(feature: &Feature<N>, point: impl Fn([N; 2]) -> [N; 2]) -> Fe
 }
 
 /// Returns the nearest of the features of two shapes, which `feature` gives by shape and place in one
-/// frame, and their distance.
+/// frame if they count, and their distance.
 fn nearest(
     counts: [usize; 2],
-    feature: impl Fn(usize, usize) -> Feature<f64>,
+    feature: impl Fn(usize, usize) -> Option<Feature<f64>>,
 ) -> Option<(Branch, f64)> {
     let mut best: Option<(Branch, f64)> = None;
     for i in 0..counts[0] {
-        let a = feature(0, i);
+        let Some(a) = feature(0, i) else {
+            continue;
+        };
         let reach = extent(&a);
         for j in 0..counts[1] {
-            let b = feature(1, j);
+            let Some(b) = feature(1, j) else {
+                continue;
+            };
             let least = best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
             let span = subtract(b.center, a.center);
             // A feature that lies in a circle round its centre is not nearer than this circle. The wall of
@@ -230,7 +237,11 @@ impl Clearance {
             placed(own, |point| place(&frames[side], point))
         };
         let counts = cores.map(|core| core.core.features.len());
-        let (branch, core) = nearest(counts, feature)?;
+        let counted = |side: usize, k: usize| {
+            let position = cores[side].core.features[k].position;
+            self.runs[side].has(position).then(|| feature(side, k))
+        };
+        let (branch, core) = nearest(counts, counted)?;
         let [a, b] = [0, 1].map(|side| feature(side, branch.features[side]));
         let centers = [a.center, b.center].map(Vector2::from);
         let (points, normal, length) = match branch.form {
@@ -405,8 +416,12 @@ impl Formula for Clearance {
             return N::unknown();
         }
         let counts = self.shapes.map(|shape| at.features(shape));
-        let real = |side, k| feature(side, k).map(N::real);
-        let Some((branch, _)) = nearest(counts, real) else {
+        let counted = |side: usize, k: usize| {
+            let own = at.feature(self.shapes[side], k);
+            let counts = self.runs[side].has(own.position);
+            counts.then(|| feature(side, k).map(N::real))
+        };
+        let Some((branch, _)) = nearest(counts, counted) else {
             return N::unknown();
         };
         let [a, b] = [0, 1].map(|side| feature(side, branch.features[side]));

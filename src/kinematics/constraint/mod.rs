@@ -131,7 +131,7 @@ impl CoordinateRelation {
             CoordinateKind::X => Self::Projection(projection(Axis::X)),
             CoordinateKind::Y => Self::Projection(projection(Axis::Y)),
             CoordinateKind::Distance => Self::Distance(Distance { from, to }),
-            CoordinateKind::Clearance(shapes) => Self::Clearance(Clearance { shapes }),
+            CoordinateKind::Clearance(shapes, runs) => Self::Clearance(Clearance { shapes, runs }),
         }
     }
 

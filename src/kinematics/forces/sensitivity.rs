@@ -81,6 +81,7 @@ impl Places {
             ForceQuantity::Held(constraint) => self.held + constraint,
             ForceQuantity::Share(joint, place) => self.shares[joint] + place,
             ForceQuantity::Applied(force, component) => self.sizes + 3 * force + component,
+            ForceQuantity::Pushes(..) => unreachable!("a sum has no index"),
             ForceQuantity::KineticEnergy => self.energies,
             ForceQuantity::PotentialEnergy => self.energies + 1,
         }
@@ -107,7 +108,13 @@ type Entries = Vec<(usize, Dual)>;
 impl ForceSensitivity {
     /// Returns the derivative of a quantity, not a number where it has none.
     pub(in crate::kinematics) fn raw_change(&self, quantity: ForceQuantity) -> f64 {
-        self.values[self.places.of(quantity)]
+        match quantity {
+            ForceQuantity::Pushes(first, end) => {
+                let pushes = (first..end).map(|k| ForceQuantity::Applied(k, 0));
+                pushes.map(|push| self.raw_change(push)).sum()
+            }
+            quantity => self.values[self.places.of(quantity)],
+        }
     }
 
     /// Returns the changes of force and torque that a joint exerts at its second marker.
@@ -123,7 +130,7 @@ impl ForceSensitivity {
     /// [`Error::NoDerivative`] where an expression has none, [`Error::ChangePoint`] where it has no
     /// limit at a change point.
     pub fn change(&self, quantity: ForceQuantity) -> Result<f64, Error> {
-        let value = self.values[self.places.of(quantity)];
+        let value = self.raw_change(quantity);
         if value.is_finite() {
             Ok(value)
         } else {

@@ -144,6 +144,9 @@ impl Forces {
             ForceQuantity::Share(joint, place) => found.shares[joint][place],
             ForceQuantity::Held(constraint) => found.multipliers[self.rows.constraints[constraint]],
             ForceQuantity::Applied(force, component) => found.sizes[force][component],
+            ForceQuantity::Pushes(first, end) => {
+                found.sizes[first..end].iter().map(|[push, ..]| push).sum()
+            }
             ForceQuantity::KineticEnergy => found.energies[0],
             ForceQuantity::PotentialEnergy => found.energies[1],
         }

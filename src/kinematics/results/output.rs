@@ -160,7 +160,7 @@ impl Output {
         let omitted = omitted_reactions(mechanism);
         list.add_derived_and_forces(mechanism, &omitted);
         let inputs = mechanism.force_inputs().into_iter();
-        list.add_forces(inputs.map(NamedForce::from));
+        list.add_forces(inputs.map(|input| NamedForce::of(input, mechanism)));
         list.0
     }
 

@@ -54,7 +54,7 @@ use kind::{Entry, Fields};
 use root::Root;
 use table::Field;
 
-use super::{Diagnostic, Mechanism, Source, Stop, syntax};
+use super::{Diagnostic, Mechanism, Source, syntax};
 
 impl Mechanism {
     /// Reads a mechanism file; returns the warnings with the mechanism.
@@ -149,12 +149,10 @@ impl<'a> Context<'a> {
         self.declare_coordinates(sections, &drivers, &measures);
         let mut stops = self.each(&root.stops, Self::stop);
         let mut forces = self.forces(&root.forces, &drivers, &measures, simulation.start);
-        // A rigid stop exerts nothing where all is driven: the motion ends there.
-        let exerts = |stop: &Stop| has_freedoms || !stop.is_rigid();
-        let contacts = self.contacts(root.contacts.items());
-        let of_stops = stops.iter().enumerate().filter(|(_, stop)| exerts(stop));
-        forces.extend(of_stops.map(|(index, stop)| stop.force(index)));
-        stops.extend(contacts);
+        let of_stops = stops.iter().enumerate();
+        let of_stops = of_stops.filter(|(_, stop)| stop.exerts(has_freedoms));
+        forces.extend(of_stops.map(|(index, stop)| stop.force(index, stop.coordinate)));
+        stops.extend(self.contacts(root.contacts.items()));
         let joints = self.each(&root.joints, Self::joint);
         // Indices are known once all joints have been read.
         let all = (joints.len() == root.joints.items().len()).then_some(&*joints);
@@ -194,11 +192,14 @@ impl<'a> Context<'a> {
             mechanism.start_at_estimates();
             self.check_shapes(&mechanism);
         }
+        if !self.failed {
+            self.check_contacts(&mechanism, root.contacts.items());
+            mechanism.add_forces_of_contacts();
+        }
         mechanism.derived = self.derived(root.measures.items(), &mechanism);
         if !self.failed {
             self.warn_of_large_lengths();
             self.check_freedoms(&mechanism, root.freedoms.items());
-            self.check_contacts(&mechanism, root.contacts.items());
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
             self.warn_of_uncalled(root.functions.items());
             self.warn_of_unused_inputs(root.inputs.items());

@@ -43,7 +43,14 @@ impl<'a> Context<'a> {
     /// Reads a stop, after the measures and drivers.
     pub(super) fn stop(&mut self, entry: Entry<'a>) -> Option<Stop> {
         let (coordinate, of, keys) = self.placed::<StopKeys<'a>>(entry, &PLACING)?;
-        let contact = self.contact(&keys);
+        let StopKeys {
+            owner,
+            restitution,
+            stiffness,
+            damping,
+            ..
+        } = &keys;
+        let contact = self.stop_contact(owner, restitution, [stiffness, damping]);
         let [min, max] = self.limits_of(coordinate, [keys.min, keys.max], &keys.owner);
         Some(Stop {
             name: entry.name().to_owned(),
@@ -56,15 +63,13 @@ impl<'a> Context<'a> {
         })
     }
 
-    /// Returns the behaviour at the limits.
-    fn contact(&mut self, keys: &StopKeys<'a>) -> Option<StopContact> {
-        let StopKeys {
-            owner,
-            restitution,
-            stiffness,
-            damping,
-            ..
-        } = keys;
+    /// Returns the behaviour at the limits of a stop, or of a contact.
+    pub(super) fn stop_contact(
+        &mut self,
+        owner: &Fields<'a>,
+        restitution: &Field<Quantity>,
+        [stiffness, damping]: [&Field<Quantity>; 2],
+    ) -> Option<StopContact> {
         let expression = |field: &Field<Quantity>| {
             let quantity = field.value.as_ref();
             quantity.map(|quantity| quantity.expression.clone())

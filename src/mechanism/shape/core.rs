@@ -24,6 +24,8 @@ pub struct Feature<N> {
     pub ends: [[N; 2]; 2],
     /// Radius of an arc \[m\], zero otherwise.
     pub radius: N,
+    /// Position along the outline: 2 k at corner k, 2 k + 1 on the edge from there to the next one.
+    pub position: u16,
 }
 
 impl<N: Copy> Feature<N> {
@@ -34,6 +36,7 @@ impl<N: Copy> Feature<N> {
             center: self.center.map(&of),
             ends: self.ends.map(|end| end.map(&of)),
             radius: of(self.radius),
+            position: self.position,
         }
     }
 }
@@ -86,32 +89,34 @@ impl<N: Number> Core<N> {
     ) {
         let given = &Given { point, number };
         self.features.clear();
-        let edge = |ends: [[N; 2]; 2]| Feature {
+        let edge = |ends: [[N; 2]; 2], k: usize| Feature {
             kind: FeatureKind::Edge,
             center: middle(ends),
             ends,
             radius: zero(),
+            position: position(k) + 1,
         };
         match &shape.form {
             ShapeForm::Disc { marker, radius } => {
                 self.radius = (given.number)(radius);
-                self.features.push(place((given.point)(*marker)));
+                self.features.push(place((given.point)(*marker), 0));
             }
             ShapeForm::Hole { marker, radius } => {
                 self.radius = zero();
                 self.features.push(Feature {
                     kind: FeatureKind::Bore,
                     radius: (given.number)(radius),
-                    ..place((given.point)(*marker))
+                    ..place((given.point)(*marker), 0)
                 });
             }
             ShapeForm::Bar { markers, radius } => {
                 self.radius = (given.number)(radius);
                 let point = |id| (given.point)(id);
+                let places = markers.iter().enumerate();
                 self.features
-                    .extend(markers.iter().map(|id| place(point(*id))));
-                let pairs = markers.windows(2);
-                let edges = pairs.map(|pair| edge([point(pair[0]), point(pair[1])]));
+                    .extend(places.map(|(k, id)| place(point(*id), k)));
+                let pairs = markers.windows(2).enumerate();
+                let edges = pairs.map(|(k, pair)| edge([point(pair[0]), point(pair[1])], k));
                 self.features.extend(edges);
             }
             ShapeForm::Outline { .. } | ShapeForm::Wall { .. } => {
@@ -126,12 +131,18 @@ impl<N: Number> Core<N> {
     }
 }
 
-fn place<N: Number>(at: [N; 2]) -> Feature<N> {
+/// Returns the position of a corner along the outline.
+pub(super) fn position(corner: usize) -> u16 {
+    2 * u16::try_from(corner).expect("a shape has at most 256 corners")
+}
+
+fn place<N: Number>(at: [N; 2], corner: usize) -> Feature<N> {
     Feature {
         kind: FeatureKind::Place,
         center: at,
         ends: [at; 2],
         radius: zero(),
+        position: position(corner),
     }
 }
 
@@ -143,15 +154,15 @@ fn middle<N: Number>([a, b]: [[N; 2]; 2]) -> [N; 2] {
 fn features_of<N: Number>(
     chain: &Chain<'_, N>,
     features: &mut Vec<Feature<N>>,
-    edge: &impl Fn([[N; 2]; 2]) -> Feature<N>,
+    edge: &impl Fn([[N; 2]; 2], usize) -> Feature<N>,
 ) {
     let half = std::f64::consts::PI;
     let first = chain.corner(0);
     let mut corner = first;
     for k in 0..chain.count {
-        features.push(place(corner.core[0]));
+        features.push(place(corner.core[0], k));
         if let (Turn::Hollow, Some(fillet)) = (corner.turn, chain.fillet) {
-            features.push(place(corner.core[1]));
+            features.push(place(corner.core[1], k));
             let [before, after] = corner
                 .normals
                 .map(|normal| moved(corner.at, normal, -fillet));
@@ -160,6 +171,7 @@ fn features_of<N: Number>(
                 center: corner.at,
                 ends: [after, before],
                 radius: fillet,
+                position: position(k),
             });
         }
         if k == chain.edges() {
@@ -174,7 +186,7 @@ fn features_of<N: Number>(
         let ends = [corner.core[1], next.core[0]];
         let inwards = chain.fillet.map_or(zero(), |fillet| -fillet);
         features.push(match chain.moved_edge(&own, ends, inwards).arc {
-            None => edge(ends),
+            None => edge(ends, k),
             Some((center, radius, turn)) => {
                 let is_wide = turn.real().abs() > half;
                 let (kind, ends) = if turn.real() > 0.0 {
@@ -187,6 +199,7 @@ fn features_of<N: Number>(
                     center,
                     ends,
                     radius,
+                    position: position(k) + 1,
                 }
             }
         });

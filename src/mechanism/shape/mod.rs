@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `chain` | corners and edges of a shape, and what a fillet or a rim makes of them |
 //! | `core` | [`Core`]: the places and edges round which a shape has its radius |
+//! | `element` | [`Run`]: the parts of two shapes that touch at one place |
 //! | `fault` | [`ShapeFault`]: outlines that do not close round an area |
 //! | `weight` | area, centre and second moment; mass, centre and inertia of a body |
 //!
@@ -13,6 +14,7 @@
 
 mod chain;
 mod core;
+mod element;
 mod fault;
 mod weight;
 
@@ -21,6 +23,8 @@ mod tests;
 
 pub use self::core::{Core, Feature, FeatureKind};
 pub use chain::Piece;
+pub use element::Run;
+pub(super) use element::{Elements, elements};
 pub use fault::{ShapeFault, ShapeFaultKind};
 pub use weight::{Section, Weight};
 

@@ -85,7 +85,7 @@ impl Balance<'_> {
             CoordinateKind::X => u,
             CoordinateKind::Y => Vector2::new(-u.y, u.x),
             CoordinateKind::Distance => (j - i).normalize(),
-            CoordinateKind::Clearance(_) => unreachable!("a clearance has no force"),
+            CoordinateKind::Clearance(..) => unreachable!("a clearance has no force"),
         };
         self.add(body_j, j, direction * effort, 0.0);
         self.add(body_i, i, -direction * effort, 0.0);

@@ -25,6 +25,7 @@
 mod balance;
 mod chains;
 mod closed_form;
+mod contacts;
 mod corner;
 mod dead_points;
 mod events;

@@ -45,7 +45,7 @@ enum Way {
 
 impl ForcePlace {
     /// Returns the forces of a mechanism: what its joints and drivers exert on the bodies of their
-    /// second markers, and its springs, dampers and loads. Reactions that redundant constraints
+    /// second markers, and its springs, dampers and loads, but no pushes of contacts. Reactions that redundant constraints
     /// leave `indeterminate` are left out unless the file asks for those of least norm.
     #[must_use]
     pub fn all(mechanism: &Mechanism, parameters: &[f64], indeterminate: &[Origin]) -> Vec<Self> {
@@ -56,9 +56,8 @@ impl ForcePlace {
                 CoordinateKind::Angle => Way::Turn,
                 CoordinateKind::X => Way::Axis(axes),
                 CoordinateKind::Y => Way::Axis(axes.turned_to(axes.angle + FRAC_PI_2)),
-                CoordinateKind::Distance | CoordinateKind::Clearance(_) => {
-                    Way::From(anchor(coordinate.from))
-                }
+                CoordinateKind::Distance => Way::From(anchor(coordinate.from)),
+                CoordinateKind::Clearance(..) => unreachable!("contacts have no arrows"),
             };
             (anchor(coordinate.to), Size::Along(quantity, way))
         };
@@ -74,9 +73,15 @@ impl ForcePlace {
             let effort = ForceQuantity::Effort(DriverId(index));
             (ForceKind::Effort, along(&driver.coordinate, effort))
         });
-        // Friction in cams, curves and links acts along no coordinate that a picture could point at.
+        // Friction in cams, curves and links acts along no coordinate that a picture could point at, and
+        // the place where shapes touch is at none of their markers.
+        let is_shown = |load: &Load| {
+            let coordinate = load.coordinate();
+            let is_contact = coordinate.is_some_and(|coordinate| coordinate.shapes().is_some());
+            load.slides().is_none() && !is_contact
+        };
         let shown = mechanism.forces.iter().enumerate();
-        let shown = shown.filter(|(_, force)| force.load.slides().is_none());
+        let shown = shown.filter(|(_, force)| is_shown(&force.load));
         let loads = shown.map(|(index, force)| {
             let load = match &force.load {
                 Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {

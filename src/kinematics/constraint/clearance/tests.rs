@@ -57,7 +57,11 @@ fn mechanism() -> Mechanism {
 fn clearances(mechanism: &Mechanism) -> Vec<Clearance> {
     let measures = mechanism.measures.iter();
     let shapes = measures.filter_map(|measure| measure.coordinate.shapes());
-    shapes.map(|shapes| Clearance { shapes }).collect()
+    let whole = |shapes| Clearance {
+        shapes,
+        runs: [Run::WHOLE; 2],
+    };
+    shapes.map(whole).collect()
 }
 
 fn configuration(mechanism: &Mechanism) -> Configuration {

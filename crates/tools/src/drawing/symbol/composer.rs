@@ -193,7 +193,9 @@ impl<'a> Composer<'a> {
         match coordinate.kind {
             CoordinateKind::X => Some(axes),
             CoordinateKind::Y => Some(axes.turned_to(axes.angle + FRAC_PI_2)),
-            CoordinateKind::Angle | CoordinateKind::Distance | CoordinateKind::Clearance(_) => None,
+            CoordinateKind::Angle | CoordinateKind::Distance | CoordinateKind::Clearance(..) => {
+                None
+            }
         }
     }
 
@@ -223,8 +225,8 @@ impl<'a> Composer<'a> {
             CoordinateKind::X | CoordinateKind::Y if is_elastic || is_damped => {
                 spring::compose(self, ends, axis, [is_elastic, is_damped]);
             }
-            // A clearance has no force.
-            CoordinateKind::Clearance(_) => {}
+            // Its shapes show a contact.
+            CoordinateKind::Clearance(..) => {}
             CoordinateKind::Angle | CoordinateKind::X | CoordinateKind::Y => {
                 load::compose_along(self, &force.name, ends, axis, law);
             }

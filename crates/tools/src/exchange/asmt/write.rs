@@ -276,7 +276,7 @@ impl Writer<'_> {
         let (class, key) = match driver.coordinate.kind {
             CoordinateKind::Angle => ("RotationalMotion", "RotationZ"),
             CoordinateKind::X | CoordinateKind::Y => ("TranslationalMotion", "TranslationZ"),
-            CoordinateKind::Distance | CoordinateKind::Clearance(_) => {
+            CoordinateKind::Distance | CoordinateKind::Clearance(..) => {
                 self.notes.push(left_out("a distance has no motion there"));
                 return;
             }
