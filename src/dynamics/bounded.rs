@@ -128,7 +128,7 @@ fn descend(
         }
         if part == f64::INFINITY {
             let grows = free.iter().zip(&target);
-            let grows = grows.filter(|(k, target)| **target != x[**k]);
+            let grows = grows.filter(|(k, target)| (**target - x[**k]).abs() > 0.0);
             return Err(grows.map(|(&k, _)| k).collect());
         }
         for (&k, target) in free.iter().zip(&target) {

@@ -299,9 +299,9 @@ fn contacts_that_cannot_be_are_refused() {
             "no shape `post`",
         ),
         (
-            "hit = { shapes = ['bar.arm', 'ground.post'], restitution = 0.5 }",
+            "hit = { shapes = ['bar.arm', 'ground.post'], friction = 0.5 }",
             "drivers",
-            "unknown key `restitution`",
+            "there is no friction between shapes",
         ),
         (
             "hit = { shapes = ['bar.arm', 'ground.post'] }\nagain = { shapes = ['ground.post', 'bar.arm'] }",

@@ -294,10 +294,10 @@ impl PassiveForces {
         let (mut list, elastic): (Vec<_>, Vec<_>) = all.partition(|own| !own.cause.has_law());
         let loads = list.len();
         list.extend(elastic);
-        for k in 0..list.len() {
-            let elements = mechanism.elements_with(list[k].index);
-            let first = k + elements.start - list[k].index;
-            list[k].group = first..first + elements.len();
+        for (k, own) in list.iter_mut().enumerate() {
+            let elements = mechanism.elements_with(own.index);
+            let first = k + elements.start - own.index;
+            own.group = first..first + elements.len();
         }
         let (count, drivers) = (list.len(), mechanism.drivers.len());
         let friction = solver.friction();

@@ -72,6 +72,9 @@ pub(super) fn help(
     let is_driver = has("motion");
     let alone = |help: &str| Some((help.to_owned(), Vec::new()));
     match word {
+        "friction" if has("shapes") => {
+            return alone("there is no friction between shapes: they slide on each other");
+        }
         "friction" => return alone(FRICTION),
         "stiffness" | "damping" | "spring" | "damper" | "torque" | "force" if is_joint => {
             return alone(SPRING);

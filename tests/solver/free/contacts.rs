@@ -334,7 +334,7 @@ fn two_capsules_meet_in_flight() {
         for k in 0..3 {
             assert!((after[k] - before[k]).abs() < 1e-12, "{before:?} {after:?}");
         }
-        if e == 1.0 {
+        if e > 0.9 {
             assert!((after[3] - before[3]).abs() < 1e-11, "{before:?} {after:?}");
         } else {
             assert!(after[3] < before[3]);

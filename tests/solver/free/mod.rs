@@ -13,6 +13,7 @@
 //! | `dead_points` | coordinates with dead points on the way, where no joint has another |
 //! | `refused` | what has no inertia, what meets a dead point |
 //! | `events` | stops and friction against closed forms |
+//! | `contacts` | contacts of shapes against closed forms |
 //! | `unseen` | events between the ends of a step |
 //! | `overlap` | parts that overlap, and what brings them apart |
 //! | `corner` | corners of prescribed motions |
