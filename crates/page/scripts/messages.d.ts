@@ -92,6 +92,10 @@ export type Gesture =
   | { kind: "link"; points: Target[] }
   // Fixes a point to ground.
   | { kind: "pivot"; marker: string }
+  // Makes a weld of a pin, as it is drawn.
+  | { kind: "weld"; joint: string }
+  // Welds a point to ground, as it is drawn.
+  | { kind: "weld_to_ground"; marker: string }
   // Moves a point onto another one and pins it there.
   | { kind: "join"; marker: string; onto: string; through?: Through | null }
   // Lets a point slide on a guide of ground.
@@ -108,6 +112,17 @@ export type Gesture =
   // Adds a cam and its follower, a knife unless another one is named; or a cam that a roller at a point
   // `of` another body follows.
   | { kind: "cam"; point: Target; contact: [number, number]; of?: string | null; follower?: Follower }
+  // Lets a point run in a track of ground through its own place and others.
+  | { kind: "curve"; marker: string; points: [number, number][] }
+  // Adds a rope over points.
+  | { kind: "rope"; points: Target[] }
+  // Couples the coordinates of two joints one to one.
+  | { kind: "coupling"; joints: [string, string] }
+  // Adds a shape to a body, otherwise to one that has all the points. The radius of one that has a
+  // radius is the distance of its `rim`.
+  | { kind: "shape"; shape: ShapeKind; body?: string | null; points: Target[]; rim?: [number, number] | null }
+  // Keeps the shapes at two points from entering each other.
+  | { kind: "contact"; points: [Target, Target] }
   // Adds a spring between two points.
   | { kind: "spring"; points: Target[] }
   // Adds a damper between two points.
@@ -116,6 +131,8 @@ export type Gesture =
   | { kind: "load"; marker: string }
   // Gives a body a mass [kg], the usual one if there is no number.
   | { kind: "mass"; body: string; mass?: number | null }
+  // Gives a joint friction.
+  | { kind: "friction"; joint: string }
   // Drives a joint.
   | { kind: "driver"; joint: string }
   // Lets a joint move by the forces.
@@ -153,6 +170,13 @@ export type Follower =
   | "knife"
   | "roller"
   | "flat";
+
+// Kind of a shape.
+export type ShapeKind =
+  | "disc"
+  | "bar"
+  | "outline"
+  | "hole";
 
 // The answer to the question whether a parameter changes or the number in its place.
 export type Through =

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::drawn::Drawn;
+use super::four_bar;
 use super::gesture::{self, Editing, Refusal};
 use super::request::{Change, Gesture, History};
 use super::sketch::sketch;
@@ -219,6 +220,15 @@ impl Document {
             Some(drawn) => shown(drawn, scale),
             None => json!({}),
         };
+        if self.drawn.is_some()
+            && let Ok(text) = TomlText::new(&*self.text)
+        {
+            for section in ["measures", "friction", "contacts"] {
+                let names = text.keys(&[section]).into_iter();
+                let things = names.map(|name| json!({ "name": name }));
+                view["sketch"][section] = things.collect();
+            }
+        }
         let first = self.problems.iter().find(|p| p.severity == Severity::Error);
         if let Some(problem) = first {
             let line = self.text[..problem.place.start.min(self.text.len())]
@@ -310,7 +320,11 @@ fn glimpse(drawn: &Drawn, scale: f64) -> Value {
 }
 
 fn status(drawn: &Drawn) -> Value {
-    json!({ "state": State::of(drawn).word(), "text": sentence(drawn) })
+    json!({
+        "state": State::of(drawn).word(),
+        "text": sentence(drawn),
+        "note": four_bar::describe(drawn),
+    })
 }
 
 fn picture(drawn: &Drawn, scale: f64, labelled: bool) -> Option<Value> {

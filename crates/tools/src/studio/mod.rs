@@ -15,11 +15,13 @@
 //! | `sketch` | what is drawn, for the pointer to find |
 //! | `inspect` | what is selected, as a form |
 //! | `status` | what a half-done drawing lacks |
+//! | `four_bar` | the type of a four-bar |
 //! | `document` | a file with its undo |
 //! | `request`, `host` | requests and gestures, and [`Host`], which answers them |
 
 mod document;
 mod drawn;
+mod four_bar;
 mod gesture;
 mod host;
 mod inspect;

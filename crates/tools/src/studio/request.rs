@@ -72,6 +72,10 @@ pub(super) enum Gesture {
     Link { points: Vec<Target> },
     /// Fixes a point to ground.
     Pivot { marker: String },
+    /// Makes a weld of a pin, as it is drawn.
+    Weld { joint: String },
+    /// Welds a point to ground, as it is drawn.
+    WeldToGround { marker: String },
     /// Moves a point onto another one and pins it there.
     Join {
         marker: String,
@@ -105,6 +109,25 @@ pub(super) enum Gesture {
         #[serde(default)]
         follower: Follower,
     },
+    /// Lets a point run in a track of ground through its own place and others.
+    Curve {
+        marker: String,
+        points: Vec<[f64; 2]>,
+    },
+    /// Adds a rope over points.
+    Rope { points: Vec<Target> },
+    /// Couples the coordinates of two joints one to one.
+    Coupling { joints: [String; 2] },
+    /// Adds a shape to a body, otherwise to one that has all the points. The radius of one that has a
+    /// radius is the distance of its `rim`.
+    Shape {
+        shape: ShapeKind,
+        body: Option<String>,
+        points: Vec<Target>,
+        rim: Option<[f64; 2]>,
+    },
+    /// Keeps the shapes at two points from entering each other.
+    Contact { points: [Target; 2] },
     /// Adds a spring between two points.
     Spring { points: Vec<Target> },
     /// Adds a damper between two points.
@@ -113,6 +136,8 @@ pub(super) enum Gesture {
     Load { marker: String },
     /// Gives a body a mass \[kg\], the usual one if there is no number.
     Mass { body: String, mass: Option<f64> },
+    /// Gives a joint friction.
+    Friction { joint: String },
     /// Drives a joint.
     Driver { joint: String },
     /// Lets a joint move by the forces.
@@ -191,6 +216,38 @@ pub(super) enum Follower {
     Roller,
     /// A face.
     Flat,
+}
+
+/// Kind of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum ShapeKind {
+    /// All within a radius of a point.
+    Disc,
+    /// All within a radius of the line through points.
+    Bar,
+    /// A polygon.
+    Outline,
+    /// A round hole in the others.
+    Hole,
+}
+
+impl ShapeKind {
+    /// Returns its key in the file.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Disc => "disc",
+            Self::Bar => "bar",
+            Self::Outline => "outline",
+            Self::Hole => "hole",
+        }
+    }
+
+    /// Returns the word with its article.
+    pub(super) fn phrase(self) -> String {
+        let article = if self == Self::Outline { "an" } else { "a" };
+        format!("{article} {}", self.word())
+    }
 }
 
 /// The answer to the question whether a parameter changes or the number in its place.

@@ -9,7 +9,7 @@ use biela::mechanism::{Body, Joint, MarkerId, Mechanism};
 ///
 /// `points` have a place `at`, the paths of their `markers`, the `joints` there, and whether they are
 /// on `ground`; `bodies` a `name`, a `frame` and the ends of their `bars`; `joints`, `drivers` and
-/// `forces` their names and where they are.
+/// `forces` their names and where they are. The document adds the names of what has no place.
 pub(super) fn sketch(drawn: &Drawn) -> Value {
     let Some(mechanism) = &drawn.mechanism else {
         return json!({

@@ -25,7 +25,9 @@ pub(super) fn unit_of<'a>(
             "inertia" => "kg.m2",
             _ => return None,
         },
-        ["joints", _, "length" | "offset" | "radius" | "radii"] => "m",
+        ["bodies", _, "shapes", _, _]
+        | ["joints", _, "length" | "offset" | "radius" | "radii"]
+        | ["friction", _, "radius" | "length"] => "m",
         ["simulation", "start" | "stop" | "step"] => "s",
         ["simulation", "gravity"] => "m/s2",
         ["parameters", name] | ["parameters", name, "value" | "min" | "max" | "tolerance"] => {

@@ -171,7 +171,10 @@ impl TomlText {
             }
             // It is there by the headers of its parts alone.
             Some(Item::Table(_)) => self.add_section(owner, &format!("{name} = {value}")),
-            _ if owner.len() == 1 || owner == ["ground", "markers"] => {
+            _ if owner.len() == 1
+                || matches!(owner, ["ground", "markers" | "shapes"])
+                || self.are_shapes_of_section(owner) =>
+            {
                 self.add_section(owner, &format!("{name} = {value}"));
             }
             _ => {
@@ -194,18 +197,32 @@ impl TomlText {
         Some((end, format!("{}{name}", &self.text[line..key])))
     }
 
-    /// Adds a section with its lines: behind the other ones of its kind, otherwise where the order
-    /// of sections puts it.
+    /// Returns whether the shapes at a path can have a section of their own: their body has a header.
+    fn are_shapes_of_section(&self, path: &[&str]) -> bool {
+        let ["bodies", body, "shapes"] = path else {
+            return false;
+        };
+        let document = self.document();
+        let body = item_at(document.as_table(), &["bodies", body]);
+        matches!(body, Some(Item::Table(body)) if !body.is_implicit() && !body.is_dotted())
+    }
+
+    /// Adds a section with its lines: behind the table in which it is, if that has a header, or behind the
+    /// other ones of its kind, otherwise where the order of sections puts it.
     pub fn add_section(&mut self, path: &[&str], lines: &str) {
         let kind = path.first().copied().unwrap_or_default();
         let sections = sections();
         let place = sections.iter().position(|section| *section == kind);
         let before = place.map_or(&sections[..], |place| &sections[..=place]);
         let document = self.document();
-        let end = before
-            .iter()
-            .rev()
-            .find_map(|section| self.end_of(document.as_table().get(section)?))
+        let owner = match path {
+            [owner @ .., _] if owner.len() > 1 => item_at(document.as_table(), owner),
+            _ => None,
+        };
+        let mut others = before.iter().rev();
+        let end = owner
+            .and_then(|owner| self.end_of(owner))
+            .or_else(|| others.find_map(|kind| self.end_of(document.as_table().get(kind)?)))
             .unwrap_or_else(|| self.line_after(document.as_table(), true));
         let header = path.join(".");
         let gap = if end == 0 { "" } else { "\n" };

@@ -4,15 +4,21 @@
 //! |---|---|
 //! | `link` | a bar or plate through points |
 //! | `pivot` | a point is fixed to ground |
+//! | `weld` | a pin is fixed, or a body is fixed to ground |
 //! | `join` | a point is moved onto another one and pinned there |
 //! | `slider` | a point slides along a line of ground or along a bar |
 //! | `cylinder` | a driver of the distance between two points |
 //! | `wheels`, `wheel` | two wheels in mesh or on a belt; where a wheel has its centre |
 //! | `rack` | a pinion on a rack |
 //! | `cam` | a cam with its follower |
+//! | `curve` | a point runs in a track through points |
+//! | `rope` | a rope over points |
+//! | `coupling` | the coordinates of two joints are in proportion |
+//! | `shape` | a shape of a body; a contact between two shapes |
 //! | `spring` | a spring or a damper between two points |
 //! | `load` | a force at a point |
 //! | `mass` | the mass of a body |
+//! | `friction` | friction in a joint |
 //! | `drive` | a joint is driven, or moves freely |
 //! | `stop` | limits of a coordinate |
 //! | `shift` | points are moved: the geometry changes |
@@ -29,9 +35,12 @@
 
 mod cam;
 mod copy;
+mod coupling;
+mod curve;
 mod cylinder;
 mod delete;
 mod drive;
+mod friction;
 mod join;
 mod length;
 mod link;
@@ -42,17 +51,20 @@ mod pivot;
 mod put;
 mod rack;
 mod rename;
+mod rope;
+mod shape;
 mod shift;
 mod slider;
 mod spring;
 mod stop;
 mod trace;
+mod weld;
 mod wheel;
 mod wheels;
 
 use super::drawn::{Drawn, inside, neat, outside};
 use super::names::Names;
-use super::request::{Follower, Gesture, Onto, Target, Through, WheelPair};
+use super::request::{Follower, Gesture, Onto, ShapeKind, Target, Through, WheelPair};
 use crate::write::{TomlText, in_braces, in_lines, in_unit, written};
 use biela::mechanism::{
     Body, Coordinate, Diagnostic, Joint, MarkerId, Mechanism, Severity, Source, shortest,
@@ -111,6 +123,8 @@ pub(super) fn act(gesture: &Gesture, editing: &mut Editing) -> Result<(), Refusa
     match gesture {
         Gesture::Link { points } => link::link(editing, points),
         Gesture::Pivot { marker } => pivot::pivot(editing, marker),
+        Gesture::Weld { joint } => weld::weld_joint(editing, joint),
+        Gesture::WeldToGround { marker } => weld::weld_to_ground(editing, marker),
         Gesture::Join {
             marker,
             onto,
@@ -139,10 +153,21 @@ pub(super) fn act(gesture: &Gesture, editing: &mut Editing) -> Result<(), Refusa
             of: None,
             follower,
         } => cam::cam(editing, point, *contact, *follower),
+        Gesture::Curve { marker, points } => curve::curve(editing, marker, points),
+        Gesture::Rope { points } => rope::rope(editing, points),
+        Gesture::Coupling { joints } => coupling::coupling(editing, joints),
+        Gesture::Shape {
+            shape,
+            body,
+            points,
+            rim,
+        } => shape::shape(editing, *shape, body.as_deref(), points, *rim),
+        Gesture::Contact { points } => shape::contact(editing, points),
         Gesture::Spring { points } => spring::spring(editing, points),
         Gesture::Damper { points } => spring::damper(editing, points),
         Gesture::Load { marker } => load::load(editing, marker),
         Gesture::Mass { body, mass } => mass::mass(editing, body, *mass),
+        Gesture::Friction { joint } => friction::friction(editing, joint),
         Gesture::Driver { joint } => drive::driver(editing, joint),
         Gesture::Freedom { joint } => drive::freedom(editing, joint),
         Gesture::Stop {

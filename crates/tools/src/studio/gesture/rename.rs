@@ -64,18 +64,19 @@ pub(super) fn check_word(name: &str) -> Result<(), Refusal> {
     }
 }
 
-/// Returns the path in the file of a thing by its name, or of a marker by its path.
+/// Returns the path in the file of a thing by its name, or of a marker or a shape by its path.
 pub(super) fn path_of(text: &TomlText, name: &str) -> Result<Vec<String>, Refusal> {
     let owned = |path: &[&str]| path.iter().map(|&part| part.to_owned()).collect();
     if let Some((body, marker)) = name.split_once('.') {
-        let path = match body {
-            "ground" => vec!["ground", "markers", marker],
-            _ => vec!["bodies", body, "markers", marker],
-        };
-        return if text.has(&path) {
-            Ok(owned(&path))
-        } else {
-            Err(format!("there is no marker `{name}`").into())
+        let paths = ["markers", "shapes"].map(|list| match body {
+            "ground" => vec!["ground", list, marker],
+            _ => vec!["bodies", body, list, marker],
+        });
+        let mut paths = paths.iter();
+        let path = paths.find(|path| text.has(path));
+        return match path {
+            Some(path) => Ok(owned(path)),
+            None => Err(format!("there is no marker `{name}`").into()),
         };
     }
     let section = named().find(|section| text.has(&[section, name]));

@@ -54,7 +54,7 @@ pub(super) fn stop(
 }
 
 /// Returns the names and coordinates of drivers, freedoms and measures.
-fn known(mechanism: &Mechanism) -> impl Iterator<Item = (&str, Coordinate)> {
+pub(super) fn known(mechanism: &Mechanism) -> impl Iterator<Item = (&str, Coordinate)> {
     let drivers = mechanism.drivers.iter();
     let drivers = drivers.map(|driver| (&*driver.name, driver.coordinate));
     let measures = mechanism.measures.iter();

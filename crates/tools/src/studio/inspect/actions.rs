@@ -128,6 +128,10 @@ impl<'a> Actions<'a> {
             self.offer("Mirror", &mirror);
         }
         self.rename(name);
+        for shape in self.editing.text.keys(&["bodies", name, "shapes"]) {
+            let delete = json!({ "kind": "delete", "names": [format!("{name}.{shape}")] });
+            self.add(&format!("Delete shape {shape}"), &delete, None);
+        }
         self.delete(name);
         Ok(())
     }
@@ -137,6 +141,11 @@ impl<'a> Actions<'a> {
         match section {
             "joints" => {
                 self.motion(name, false);
+                self.offer("Fix it", &json!({ "kind": "weld", "joint": name }));
+                self.offer(
+                    "Add friction",
+                    &json!({ "kind": "friction", "joint": name }),
+                );
                 self.offer("Add stops", &json!({ "kind": "stop", "joint": name }));
             }
             "drivers" | "freedoms" | "measures" => {

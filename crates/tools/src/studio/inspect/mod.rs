@@ -26,7 +26,8 @@ const DECIMALS: usize = 4;
 ///
 /// A row has a `label`, the `path` of its value, with the `element` of a list there, the `value` as it
 /// stands in the file, empty if it is left out, `shown` in mm or degrees, `unit`, `type` (`number`,
-/// `text`, `choice`, `flag` or `read`), `choices` and `help`. A gesture of `put` sets it. An action has
+/// `text`, `choice`, `flag`, `length` or `read`), `choices`, `help`, and the `group` in which it is folded
+/// away. A gesture of `put` sets it, that of `length` a distance of its two `markers`. An action has
 /// a `label` and a `gesture`; one that cannot be done now says `why`. A gesture with a `name` that is
 /// null, or a `rename` without `new`, asks for it.
 ///
@@ -39,7 +40,7 @@ pub(super) fn inspect(document: &Document, names: &[&str]) -> Result<Value, Refu
     let (mut rows, mut actions) = (Rows::new(&editing), Actions::new(&editing));
     match (kind, names) {
         ("mechanism", _) => {
-            rows.mechanism();
+            rows.mechanism()?;
             actions.mechanism();
         }
         ("point", markers) => {

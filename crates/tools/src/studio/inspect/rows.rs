@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::gesture::{Editing, Refusal};
 use super::super::unit_of::unit_of;
 use super::form::{Field, FieldKind, fields};
-use biela::mechanism::{MarkerId, rounded};
+use biela::mechanism::{CoordinateKind, MarkerId, Measure, rounded};
 
 /// Significant digits of values that are shown beside those of the file.
 const DIGITS: usize = 6;
@@ -24,14 +24,62 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the texts and the default experiment of the mechanism.
-    pub(super) fn mechanism(&mut self) {
+    /// Adds the drivers, lengths and measures of the mechanism; folded away, its texts and its default
+    /// experiment.
+    pub(super) fn mechanism(&mut self) -> Result<(), Refusal> {
+        for section in ["drivers", "freedoms"] {
+            for name in self.editing.text.keys(&[section]) {
+                let path = [section, &*name, "start"];
+                if self.editing.text.has(&path) {
+                    self.number(&name, &path, None, "value at which the file starts it");
+                }
+            }
+        }
+        if let Some(mechanism) = &self.editing.drawn.mechanism {
+            for body in &mechanism.bodies {
+                // Of a plate the last side leads back.
+                let count = body.markers.len();
+                let sides = if count > 2 {
+                    count
+                } else {
+                    count.saturating_sub(1)
+                };
+                for k in 0..sides {
+                    let ends = [body.markers[k], body.markers[(k + 1) % count]];
+                    self.length(&format!("{} {}", body.name, self.pair(ends)?), ends)?;
+                }
+            }
+            let is_placed = |measure: &&Measure| {
+                !matches!(measure.coordinate.kind, CoordinateKind::Clearance(_))
+            };
+            for measure in mechanism.measures.iter().filter(is_placed) {
+                let unit = if measure.coordinate.kind.is_angle() {
+                    "rad"
+                } else {
+                    "m"
+                };
+                let value = self.editing.drawn.value(measure.coordinate);
+                self.read(&measure.name, "", Some((value, unit)));
+            }
+        }
+        let first = self.list.len();
         for field in fields(&self.editing.text, &[]) {
             if field.kind == FieldKind::Text {
                 self.field(&[], &field);
             }
         }
+        self.group(first, "About the mechanism");
+        let first = self.list.len();
         self.table(&["simulation"]);
+        self.group(first, "Simulation");
+        Ok(())
+    }
+
+    /// Folds away the rows from one on.
+    fn group(&mut self, first: usize, name: &str) {
+        for row in &mut self.list[first..] {
+            row["group"] = json!(name);
+        }
     }
 
     /// Adds all keys of a table; a parameter may be a number alone.
@@ -68,10 +116,16 @@ impl<'a> Rows<'a> {
         }
         for (index, from) in markers.iter().enumerate() {
             for to in &markers[index + 1..] {
-                let label = format!("length {}", self.pair([*from, *to])?);
-                let [a, b] = [*from, *to].map(|id| self.editing.drawn.inside(id));
-                let long = f64::hypot(b[0] - a[0], b[1] - a[1]);
-                self.read(&label, "", Some(long));
+                let ends = [*from, *to];
+                self.length(&format!("length {}", self.pair(ends)?), ends)?;
+            }
+        }
+        for shape in self.editing.text.keys(&["bodies", name, "shapes"]) {
+            for key in ["radius", "fillet", "depth"] {
+                let path = ["bodies", name, "shapes", &*shape, key];
+                if self.editing.text.has(&path) {
+                    self.number(&format!("{shape} {key}"), &path, None, "of the shape");
+                }
             }
         }
         let joints = mechanism.joints.iter();
@@ -80,6 +134,20 @@ impl<'a> Rows<'a> {
         }
         for field in late {
             self.field(&own, &field);
+        }
+        Ok(())
+    }
+
+    /// Adds the distance of two markers of a body, which can be set.
+    fn length(&mut self, label: &str, ends: [MarkerId; 2]) -> Result<(), Refusal> {
+        let mechanism = self.editing.mechanism()?;
+        let [a, b] = ends.map(|id| self.editing.drawn.inside(id));
+        let paths = ends.map(|id| mechanism.marker_path(id));
+        self.read(label, "", Some((f64::hypot(b[0] - a[0], b[1] - a[1]), "m")));
+        if let Some(row) = self.list.last_mut() {
+            row["type"] = json!("length");
+            row["markers"] = json!(paths);
+            row["help"] = json!("the second point moves along the line; all other lengths stay");
         }
         Ok(())
     }
@@ -221,11 +289,11 @@ impl<'a> Rows<'a> {
         }));
     }
 
-    /// Adds what is only read: a text, or a length \[m\].
-    fn read(&mut self, label: &str, value: &str, length: Option<f64>) {
-        let unit = length.map(|_| "m");
+    /// Adds what is only read: a text, or a number with its unit.
+    fn read(&mut self, label: &str, value: &str, number: Option<(f64, &str)>) {
+        let (number, unit) = number.unzip();
         self.list.push(json!({
-            "label": label, "path": [], "value": value, "number": length, "unit": unit, "type": "read",
+            "label": label, "path": [], "value": value, "number": number, "unit": unit, "type": "read",
         }));
     }
 }

@@ -316,3 +316,170 @@ fn a_roller_on_a_lever_follows_a_cam() {
         host.text()
     );
 }
+
+/// Draws two links in line, the first one on ground.
+fn two_links() -> Host {
+    let mut host = studio(EMPTY);
+    let first = json!({ "kind": "link", "points": [ground(0.0, 0.0), { "at": [0.2, 0.0] }] });
+    act(&mut host, &first);
+    let second = json!({ "kind": "link", "points": [marker("link.B"), { "at": [0.25, 0.15] }] });
+    act(&mut host, &second);
+    host
+}
+
+#[test]
+fn a_weld_keeps_the_angle_that_is_drawn() {
+    let mut host = two_links();
+    let view = act(&mut host, &json!({ "kind": "weld", "joint": "B" }));
+    let drawn = f64::atan2(0.15, 0.05);
+    assert!((angle(&view, "link_2") - drawn).abs() < 1e-12);
+    let view = turned(&mut host, "A", "link_angle", "30*deg");
+    assert!((angle(&view, "link_2") - drawn - 30.0_f64.to_radians()).abs() < 1e-12);
+    let why = refusal(&mut host, &json!({ "kind": "weld", "joint": "A" }));
+    assert!(
+        why.contains("the driver `link_angle` moves this pin"),
+        "{why}"
+    );
+    let to_ground = json!({ "kind": "weld_to_ground", "marker": "ground.A" });
+    assert!(refusal(&mut host, &to_ground).contains("is a point of ground"));
+    insta::assert_snapshot!(host.text());
+}
+
+#[test]
+fn shapes_stand_behind_their_body_and_touch() {
+    let mut host = two_links();
+    let bar = json!({
+        "kind": "shape", "shape": "bar", "points": [marker("link.A"), marker("link.B")],
+        "rim": [0.1, 0.012],
+    });
+    act(&mut host, &bar);
+    let disc = json!({
+        "kind": "shape", "shape": "disc", "body": "ground", "points": [ground(0.0, 0.15)],
+        "rim": [0.0, 0.17],
+    });
+    act(&mut host, &disc);
+    let outline = json!({
+        "kind": "shape", "shape": "outline", "body": "link_2",
+        "points": [marker("link.B"), { "at": [0.3, 0.0] }, { "at": [0.25, 0.15] }],
+    });
+    act(&mut host, &outline);
+    let points = json!([{ "at": [0.1, 0.01] }, { "at": [0.0, 0.16] }]);
+    act(&mut host, &json!({ "kind": "contact", "points": points }));
+    insta::assert_snapshot!(host.text());
+    for (gesture, why) in [
+        (
+            json!({ "kind": "contact", "points": points }),
+            "have a contact already",
+        ),
+        (
+            json!({ "kind": "contact", "points": [{ "at": [0.1, 0.01] }, { "at": [0.5, 0.5] }] }),
+            "there is no shape here",
+        ),
+        (
+            json!({ "kind": "contact", "points": [{ "at": [0.1, 0.01] }, { "at": [0.1, 0.0] }] }),
+            "two bodies",
+        ),
+        (
+            json!({
+                "kind": "shape", "shape": "bar", "points": [marker("link.A"), marker("link_2.C")],
+                "rim": [0.1, 0.1],
+            }),
+            "on different ones",
+        ),
+        (
+            json!({ "kind": "shape", "shape": "disc", "points": [marker("link.A")], "rim": [0, 0] }),
+            "needs a radius",
+        ),
+        (
+            json!({ "kind": "shape", "shape": "hole", "points": [{ "at": [0, 0] }], "rim": [1, 0] }),
+            "part of a body",
+        ),
+    ] {
+        let told = refusal(&mut host, &gesture);
+        assert!(told.contains(why), "{told}");
+    }
+    // With its shape the contact goes.
+    let view = act(
+        &mut host,
+        &json!({ "kind": "delete", "names": ["link.bar"] }),
+    );
+    assert!(
+        !view["text"]
+            .as_str()
+            .is_some_and(|text| text.contains("contacts"))
+    );
+}
+
+#[test]
+fn ropes_tracks_couplings_and_friction_are_written_as_they_are_drawn() {
+    let mut host = two_links();
+    let curve =
+        json!({ "kind": "curve", "marker": "link_2.C", "points": [[0.2, 0.2], [0.1, 0.2]] });
+    act(&mut host, &curve);
+    let third = json!({ "kind": "link", "points": [ground(0.5, 0.0), { "at": [0.5, 0.1] }] });
+    act(&mut host, &third);
+    let rope = json!({
+        "kind": "rope", "points": [marker("link.B"), ground(0.3, 0.1), marker("link_3.E")],
+    });
+    act(&mut host, &rope);
+    act(&mut host, &json!({ "kind": "friction", "joint": "A" }));
+    let again = refusal(&mut host, &json!({ "kind": "friction", "joint": "A" }));
+    assert!(again.contains("already"), "{again}");
+    insta::assert_snapshot!(host.text());
+    let mut host = two_links();
+    act(
+        &mut host,
+        &json!({ "kind": "coupling", "joints": ["A", "B"] }),
+    );
+    insta::assert_snapshot!(host.text());
+    let alone = refusal(
+        &mut host,
+        &json!({ "kind": "coupling", "joints": ["A", "A"] }),
+    );
+    assert!(alone.contains("two joints"), "{alone}");
+}
+
+#[test]
+fn a_four_bar_is_of_the_type_that_grashof_says() {
+    // Lengths of crank, coupler, rocker and base [m], with the type by the sums of two of them.
+    for (lengths, kind) in [
+        ([0.1, 0.25, 0.3, 0.4], "crank-rocker: `link` turns fully"),
+        ([0.3, 0.25, 0.1, 0.4], "crank-rocker: `link_3` turns fully"),
+        ([0.25, 0.3, 0.4, 0.1], "double-crank"),
+        ([0.25, 0.1, 0.3, 0.4], "double-rocker: `link_2` turns fully"),
+        ([0.2, 0.2, 0.2, 0.5], "triple-rocker"),
+        ([0.1, 0.3, 0.2, 0.4], "change-point"),
+    ] {
+        let [crank, coupler, rocker, base] = lengths;
+        // At this angle of the crank all of them close.
+        let start = 0.5_f64;
+        let at = [crank * start.cos(), crank * start.sin()];
+        let [dx, dy] = [base - at[0], -at[1]];
+        let far = f64::hypot(dx, dy);
+        let along = (coupler * coupler - rocker * rocker + far * far) / (2.0 * far);
+        let aside = (coupler * coupler - along * along).sqrt();
+        let end = [
+            at[0] + (along * dx - aside * dy) / far,
+            at[1] + (along * dy + aside * dx) / far,
+        ];
+        assert!(aside.is_finite(), "{lengths:?} closes");
+        let mut host = studio(EMPTY);
+        let links = [
+            json!([ground(0.0, 0.0), { "at": at }]),
+            json!([marker("link.B"), { "at": end }]),
+            json!([marker("link_2.C"), ground(base, 0.0)]),
+        ];
+        let views =
+            links.map(|points| act(&mut host, &json!({ "kind": "link", "points": points })));
+        assert!(views[1]["status"]["note"].is_null());
+        let note = views[2]["status"]["note"].as_str().expect("a four-bar");
+        assert!(note.starts_with(kind), "{lengths:?}: {note}");
+        // The cosine law between coupler and rocker.
+        let cos = (coupler * coupler + rocker * rocker - far * far) / (2.0 * coupler * rocker);
+        let angle = cos.abs().acos().to_degrees();
+        assert!(
+            note.ends_with(&format!("transmission angle {angle:.0}° here")),
+            "{angle}: {note}"
+        );
+    }
+}
