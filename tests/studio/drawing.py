@@ -18,6 +18,18 @@ KEYS = {
     "trace": "t",
     "mass": "m",
     "spring": "i",
+    "weld": "x",
+    "friction": "n",
+    "stop": "e",
+    "coupling": "z",
+    "rope": "y",
+    "track": "j",
+    "cam": "k",
+    "bar": "B",
+    "disc": "D",
+    "outline": "O",
+    "hole": "H",
+    "contact": "C",
 }
 
 

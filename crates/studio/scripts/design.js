@@ -4,7 +4,7 @@
 import { add, shown } from "./controls.js";
 import { askLength, askParameter, isMac } from "./dialogs.js";
 import { findAt, pointAt, rodsOf } from "./snap.js";
-import { TOOLS, ownMarker, unfit } from "./tools.js";
+import { TOOLS, ownMarker, unfit, wantedAt } from "./tools.js";
 import { angleOf, lengthOf } from "./units.js";
 
 // Way of the pointer from which a press is a drag [pixels].
@@ -12,8 +12,17 @@ const DRAG = 4;
 // Time for which a finger rests to open the menu [ms].
 const LONG_PRESS = 550;
 
+// Clicks above which Enter ends a tool.
+const MANY = 10;
+// What touches a cam.
+const FOLLOWERS = [
+  ["A follower with a point", "knife"],
+  ["A follower with a roller", "roller"],
+  ["A follower with a flat face", "flat"],
+];
+
 // Tools that take hold of the face of a wheel.
-const FACED = ["link", "plate", "cylinder", "spring", "damper"];
+const FACED = ["link", "plate", "cylinder", "spring", "damper", "bar", "disc", "outline", "hole"];
 
 export class Design {
   /** `studio` asks the solver and shows its views; `sheet` is drawn on. */
@@ -25,6 +34,8 @@ export class Design {
     this.found = [];
     this.pointers = new Map();
     this.answers = new Map();
+    // Place of the keys on the sheet [m], null while the pointer draws.
+    this.caret = null;
     sheet.onLook = () => {
       studio.background.look();
       this.mark();
@@ -39,7 +50,9 @@ export class Design {
 
   /** Takes a tool by its name. */
   take(name) {
+    const { caret } = this;
     this.drop();
+    this.caret = caret;
     this.tool = name;
     this.studio.showTool(name);
     this.hint();
@@ -49,6 +62,7 @@ export class Design {
   drop() {
     this.found = [];
     this.over = null;
+    this.caret = null;
     this.typed.hidden = true;
     this.forget();
     this.drag = null;
@@ -95,21 +109,28 @@ export class Design {
     );
   }
 
+  /**
+   * Finds what is at the pointer.
+   * @returns {any}
+   */
   look(event) {
     // Over a picture its lines lead the hand, not the grid.
-    this.isFree = event.shiftKey || event.altKey || Boolean(this.studio.background.image);
     const chosen = TOOLS[this.tool];
+    const isRim = wantedAt(chosen, this.found.length) === "rim";
+    this.isFree = isRim || event.shiftKey || event.altKey || Boolean(this.studio.background.image);
     const last = this.found[this.found.length - 1];
     const origin = chosen.typed && last ? last.at : null;
     const found = findAt(this.sheet, this.sketch, this.sheet.placeOf(event), {
       kind: event.pointerType,
       origin: this.drag?.origin ?? origin,
       free: this.isFree,
+      bars: !isRim,
       without: this.drag?.without ?? [],
       things: this.tool === "select" && !this.drag,
     });
-    if (this.tool === "scale") {
-      return { at: this.sheet.toPoint(this.sheet.placeOf(event)), guides: [] };
+    if (this.tool === "scale" || this.tool === "contact") {
+      const there = { at: this.sheet.toPoint(this.sheet.placeOf(event)), guides: [] };
+      return this.tool === "scale" ? there : { ...there, ...this.insideOf(event) };
     }
     if (FACED.includes(this.tool) && !found.point && !found.body && !this.isGround(event)) {
       const { body } = this.insideOf(event);
@@ -154,6 +175,7 @@ export class Design {
   }
 
   moved(event) {
+    this.caret = null;
     const now = this.sheet.placeOf(event);
     const before = this.pointers.get(event.pointerId);
     if (before && this.pointers.size === 2) {
@@ -280,23 +302,38 @@ export class Design {
       this.finish();
       return;
     }
+    found.ground = this.isGround(event);
     const why = unfit(tool, this.found.length, found);
     if (why) {
       this.studio.say(why);
       return;
     }
-    found.ground = this.isGround(event);
-    if (tool.only?.[this.found.length] === "joint") {
+    const wanted = wantedAt(tool, this.found.length);
+    if (wanted === "joint") {
       found.joint = await this.chooseJoint(found.point.joints, event);
       if (!found.joint) {
         return;
       }
     }
+    const pins = this.sketch.joints.filter((joint) => joint.is_pin && found.point?.joints.includes(joint.name));
+    if (wanted === "pin" && pins.length) {
+      found.joint = await this.chooseJoint(pins.map((pin) => pin.name), event);
+    }
+    if (wanted === "owner") {
+      found.owner = found.body ?? (found.point ? await this.chooseOwner(found.point, event) : "ground");
+    }
+    if (this.tool === "cam" && first && ![first, found].some(({ point }) => point && !point.ground)) {
+      found.follower = await this.studio.choose(FOLLOWERS, event);
+    }
     if (this.tool === "wheels" && this.found.length < 2 && found.point) {
       found.fixed = await this.chooseWheel(found.point, event);
     }
     const last = this.found[this.found.length - 1];
-    if (last && isSame(last.at, found.at) && tool.only === undefined) {
+    if (last && isSame(last.at, found.at) && !["joint", "part"].includes(wanted)) {
+      if (tool.most > MANY && this.found.length >= tool.least) {
+        this.finish();
+        return;
+      }
       this.studio.say("This is the point that was clicked before: click another one");
       return;
     }
@@ -324,7 +361,9 @@ export class Design {
       return;
     }
     const gesture = tool.gesture(this.found);
+    const { caret } = this;
     this.drop();
+    this.caret = caret;
     this.studio.gesture(gesture);
     this.hint();
   }
@@ -338,6 +377,12 @@ export class Design {
     }
     const fixed = markers.map((marker) => [`A wheel fixed to ${bodyOf(marker).name}`, marker]);
     return this.studio.choose([["A wheel that turns here", ""], ...fixed], event);
+  }
+
+  /** Asks of which body at a point a shape is part. */
+  async chooseOwner(point, event) {
+    const owners = [...new Set(point.markers.map((marker) => marker.split(".")[0]))];
+    return owners.length === 1 ? owners[0] : this.studio.choose(owners.map((owner) => [`Part of ${owner}`, owner]), event);
   }
 
   /** Asks which of several joints at a point is meant. */
@@ -500,6 +545,10 @@ export class Design {
     if (over && !this.drag && (this.tool !== "select" || over.point || over.body)) {
       this.markFound(over);
     }
+    if (this.caret) {
+      const [x, y] = sheet.toScreen(this.caret);
+      sheet.mark("path", { d: `M${fix(x - 9)} ${fix(y)}h18M${fix(x)} ${fix(y - 9)}v18`, class: "caret" });
+    }
     if (this.drag?.to) {
       this.markFound(this.drag.to);
     }
@@ -576,6 +625,38 @@ export class Design {
     });
   }
 
+  // -- the keys' place -----------------------------------------------------------------------
+
+  /** Moves the place of the keys, and finds what is there. */
+  moveCaret(at, event) {
+    this.caret = at;
+    this.isFine = event.shiftKey;
+    this.over = { ...this.look(this.atCaret(event)), ground: this.isGround(event) };
+    this.foresee();
+    this.mark();
+    const { at: reached, point, body } = this.over;
+    const { name, factor } = this.studio.unit;
+    const there = reached.map((x) => shown(x / factor, 5)).join(", ");
+    this.studio.tellPlace(`${there} ${name}${point ? `: ${point.markers.join(", ")}` : body ? `: ${body}` : ""}`);
+  }
+
+  /** Returns an event of the pointer at the place of the keys. */
+  atCaret({ ctrlKey, metaKey }) {
+    const box = this.sheet.place.getBoundingClientRect();
+    const [u, v] = this.sheet.toScreen(this.caret);
+    return { clientX: box.left + u, clientY: box.top + v, pointerType: "keys", ctrlKey, metaKey, shiftKey: this.isFine };
+  }
+
+  /** Moves from point to point, in the order of the file. */
+  nextPoint(step, event) {
+    const { points } = this.sketch;
+    const here = points.findIndex(({ at }) => this.caret && isSame(at, this.caret));
+    const next = here < 0 ? (step > 0 ? 0 : points.length - 1) : (here + step + points.length) % points.length;
+    if (points.length) {
+      this.moveCaret(points[next].at, event);
+    }
+  }
+
   // -- menu and keys -------------------------------------------------------------------------
 
   menu(event) {
@@ -589,8 +670,22 @@ export class Design {
   /** Takes a key; true if it was one of design. */
   key(event) {
     const { key } = event;
-    if (event.ctrlKey || event.metaKey || event.altKey) {
+    const clicks = key === "Enter" && this.caret && !event.altKey && event.target === this.sheet.place;
+    if ((event.ctrlKey || event.metaKey || event.altKey) && !clicks) {
       return false;
+    }
+    if (key === "PageDown" || key === "PageUp") {
+      this.nextPoint(key === "PageDown" ? 1 : -1, event);
+      return true;
+    }
+    if (clicks) {
+      const there = this.atCaret(event);
+      this.click(this.look(there), there);
+      return true;
+    }
+    if (key === "ContextMenu" && this.caret) {
+      this.menu(this.atCaret(event));
+      return true;
     }
     if (key === "Escape") {
       if (this.found.length || this.drag) {
@@ -604,7 +699,7 @@ export class Design {
       return true;
     }
     if (key === "Enter" && this.found.length) {
-      if (TOOLS[this.tool].most > 10) {
+      if (TOOLS[this.tool].most > MANY) {
         this.finish();
       }
       return true;
@@ -625,15 +720,25 @@ export class Design {
     if (key === " " || key === "g") {
       this.holds = key;
     }
-    const tool = Object.keys(TOOLS).find((name) => TOOLS[name].key === key.toLowerCase());
+    const names = Object.keys(TOOLS);
+    const tool = names.find((name) => TOOLS[name].key === key) ?? names.find((name) => TOOLS[name].key === key.toLowerCase());
     // While something is drawn, G held makes the next point one of ground.
     if (tool && !(key === "g" && this.found.length)) {
       this.take(tool);
       return true;
     }
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-    if (arrows[key] && this.studio.selection) {
-      this.nudge(arrows[key].map((part) => part * this.sheet.step * (event.shiftKey ? 0.1 : 1)));
+    if (arrows[key]) {
+      const by = arrows[key].map((part) => part * this.sheet.step * (event.shiftKey ? 0.1 : 1));
+      if (this.studio.selection && this.tool === "select") {
+        this.nudge(by);
+      } else {
+        const from = this.caret ?? this.over?.at ?? this.sheet.center;
+        // On the lines of the grid, unless Shift goes in parts of them.
+        const { step } = this.sheet;
+        const to = [0, 1].map((k) => from[k] + by[k]).map((x) => (event.shiftKey ? x : Number((Math.round(x / step) * step).toPrecision(12))));
+        this.moveCaret(to, event);
+      }
       return true;
     }
     return false;

@@ -3,12 +3,14 @@
 
 import { add, say, shown } from "./controls.js";
 import { TOOLS, icon } from "./tools.js";
-import { inPlaceOf } from "./units.js";
+import { inPlaceOf, lengthOf } from "./units.js";
 
 export class Inspector {
   constructor(studio, place) {
     this.studio = studio;
     this.place = place;
+    // Names of the parts that the reader has opened.
+    this.opened = new Set();
   }
 
   show() {
@@ -40,26 +42,39 @@ export class Inspector {
       button.addEventListener("click", (event) => event.detail < 2 && this.studio.act(gesture));
     }
     const rows = add(this.place, "div", { className: "rows" });
+    const groups = new Map([[undefined, rows]]);
     for (const row of answer.rows) {
-      this.row(rows, row);
+      const { group } = row;
+      if (!groups.has(group)) {
+        groups.set(group, this.fold(rows, group));
+      }
+      this.row(groups.get(group), row);
     }
+  }
+
+  /** Adds a part that is folded away, unless the reader has opened it. */
+  fold(place, name) {
+    const part = add(place, "details", { open: this.opened.has(name) });
+    add(part, "summary", { textContent: name });
+    part.addEventListener("toggle", () => this.opened[part.open ? "add" : "delete"](name));
+    return part;
   }
 
   /** Offers to select what belongs to the selection: joints and drivers of a point, all things of none. */
   related(place) {
     const { selection, view } = this.studio;
-    const { joints, drivers, forces, stops, parameters } = view.sketch ?? {};
+    const { joints, drivers, forces, stops, friction, contacts, measures, parameters } = view.sketch ?? {};
     const names = (list, fits = (_) => true) => (list ?? []).filter(fits).map(({ name }) => name);
     const groups = selection
       ? [names(joints, (joint) => selection.joints?.includes(joint.name)), names(drivers, (driver) => driver.markers.some((marker) => selection.markers?.includes(marker)))]
-      : [names(drivers), names(forces), names(stops), names(parameters)];
+      : [drivers, measures, forces, stops, friction, contacts, parameters].map((list) => names(list));
     for (const name of new Set(groups.flat())) {
       const button = add(place, "button", { type: "button", textContent: name });
       button.addEventListener("click", () => this.studio.select({ kind: "thing", name }));
     }
   }
 
-  row(place, { label, path, element, value, shown: told, number, unit, type, choices, help }) {
+  row(place, { label, path, element, value, shown: told, number, unit, type, choices, help, markers }) {
     const row = add(place, "label", { className: "field", title: help ?? "" });
     const own = { m: this.studio.unit, rad: this.studio.turn }[unit];
     const inUnit = own && typeof number === "number" ? shown(number / own.factor) : null;
@@ -82,7 +97,8 @@ export class Inspector {
       list.addEventListener("change", () => put(list.value));
       return;
     }
-    const isNumber = inUnit !== null && /^"?[-+]?[\d._]+(e[-+]?\d+)?(\s*\*\s*[a-z]+)?"?$/i.test(value);
+    const isLength = type === "length";
+    const isNumber = isLength || (inUnit !== null && /^"?[-+]?[\d._]+(e[-+]?\d+)?(\s*\*\s*[a-z]+)?"?$/i.test(value));
     const brief = isNumber ? String(inUnit) : short(plain(value ?? ""));
     const field = add(row, "input", { type: "text", value: brief, title: plain(value ?? ""), autocomplete: "off", spellcheck: false });
     const beside = inUnit === null ? told : isNumber ? "" : `${inUnit} ${own.name}`;
@@ -95,6 +111,10 @@ export class Inspector {
         return;
       }
       taken = text;
+      if (isLength) {
+        const long = lengthOf(text, own);
+        return long > 0 ? this.studio.design.change({ kind: "length", markers, value: long }) : this.studio.say("A length is above zero");
+      }
       const isText = type === "text" && text !== "";
       const length = text.match(/^([-+]?[0-9.]+)\s*(mm|cm|m|inch|deg|rad)$/);
       if (own && text !== "" && Number.isFinite(Number(text))) {

@@ -17,9 +17,9 @@ const distance = ([x, y], [u, v]) => Math.hypot(u - x, v - y);
 /**
  * Returns what is at a place of the sheet [pixels]: `at` [m], and `point` (of the sketch), `body`
  * (its name), with `things` a `thing` such as a spring, or none of them. `origin`, a point [m], draws to horizontal and vertical and every 15°;
- * `free` leaves grid and directions out; `without` are names of markers that are passed over.
+ * `free` leaves grid and directions out, `bars: false` bars; `without` are names of markers that are passed over.
  */
-export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, free = false, without = [], things = false } = {}) {
+export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, free = false, without = [], things = false, bars: finds = true } = {}) {
   const near = NEAR_POINT[kind] ?? NEAR_POINT.mouse;
   const others = sketch.points.filter((point) => !point.markers.some((marker) => without.includes(marker)));
   const nearest = (items, far) =>
@@ -30,7 +30,7 @@ export function findAt(sheet, sketch, place, { kind = "mouse", origin = null, fr
     return { at: point.each.at, point: point.each, guides: [] };
   }
   const bars = sketch.bodies.flatMap((body) =>
-    body.markers.some((marker) => without.includes(marker)) ? [] : body.bars.map(([from, to]) => ({ body, from, to })),
+    !finds || body.markers.some((marker) => without.includes(marker)) ? [] : body.bars.map(([from, to]) => ({ body, from, to })),
   );
   const rods = things ? rodsOf(sketch) : [];
   const bar = nearest(

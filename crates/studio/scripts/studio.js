@@ -8,12 +8,13 @@ import { Menu, askName, buttonRow, byKeys, openWindow } from "./dialogs.js";
 import { Disk } from "./disk.js";
 import { Drafts, newId } from "./drafts.js";
 import { exportFmu, importFile, saveDrawing, saveFile, saveMade, saveVideo, shareLink, showNotes, videoKind } from "./export.js";
+import { Guide } from "./guide.js";
 import { Inspector } from "./inspector.js";
 import { fileOfLink } from "./link.js";
 import { Live } from "./live.js";
 import { Sheet } from "./sheet.js";
 import { Broken, Solver, unpack } from "./solver.js";
-import { TOOLS, icon } from "./tools.js";
+import { TOOLS, icon, keyName } from "./tools.js";
 import { ANGLES, LENGTHS } from "./units.js";
 
 const EMPTY = 'format = 1\nname = "mechanism"\n';
@@ -29,7 +30,12 @@ const MAKERS = {
   drivers: ["driver", "freedom", "cylinder"],
   forces: ["spring", "damper", "load"],
   stops: ["stop"],
+  joints: ["curve", "rope", "coupling"],
+  friction: ["friction"],
+  contacts: ["contact"],
 };
+// The lists of a sketch whose things have names.
+const NAMED = ["joints", "drivers", "forces", "stops", "measures", "friction", "contacts", "parameters"];
 
 class Studio {
   constructor(root, module, parts, templates) {
@@ -51,11 +57,12 @@ class Studio {
     this.mode = "design";
     this.unit = { name: "mm", factor: LENGTHS.mm };
     this.turn = { name: "deg", factor: ANGLES.deg };
-    this.menu = new Menu(root);
+    this.menu = new Menu(this.find(".middle"));
     this.sheet = new Sheet(this.find(".sheet"), () => this.redraw());
     this.background = new Background(this, this.sheet);
     this.design = new Design(this, this.sheet);
     this.inspector = new Inspector(this, this.find(".inspector"));
+    this.guide = new Guide(this, this.find(".guide"));
     this.makeTools();
     this.makeUnits();
     this.editor = makeEditor(this.find(".editor"), {
@@ -66,6 +73,8 @@ class Studio {
       redo: () => this.redo(),
       label: "The mechanism's file",
     });
+    // Said again for programs that do not count what is editable as reached by keys.
+    this.find(".editor .cm-content").tabIndex = 0;
     for (const element of root.querySelectorAll("[title]")) {
       element.title = byKeys(element.title);
     }
@@ -97,8 +106,7 @@ class Studio {
     if (sketch?.bodies.some((body) => body.name === name)) {
       return { kind: "body", name };
     }
-    const lists = [sketch?.drivers, sketch?.forces, sketch?.stops, sketch?.joints];
-    const isThing = lists.some((list) => list?.some((thing) => thing.name === name));
+    const isThing = NAMED.some((list) => sketch?.[list]?.some((thing) => thing.name === name));
     return isThing ? { kind: "thing", name } : undefined;
   }
 
@@ -228,7 +236,7 @@ class Studio {
       this.renameSelection(gesture.old, gesture.new);
     }
     this.show(answer);
-    if (gesture.kind === "mass") {
+    if ((gesture.kind === "mass" || gesture.kind === "shape") && gesture.body && gesture.body !== "ground") {
       this.select({ kind: "body", name: gesture.body });
     }
     this.selectMade(gesture.kind, before);
@@ -319,6 +327,7 @@ class Studio {
     this.inspector.show();
     this.design.mark();
     this.keep();
+    this.guide.look();
   }
 
   /** Takes the units that the user has chosen; for lengths otherwise the one of the file. */
@@ -558,7 +567,7 @@ class Studio {
   keepSelection() {
     const { selection } = this;
     const { sketch } = this.view;
-    const things = ["joints", "drivers", "forces", "stops", "parameters"].flatMap((list) => sketch?.[list] ?? []);
+    const things = NAMED.flatMap((list) => sketch?.[list] ?? []);
     const gone =
       selection &&
       ((selection.kind === "thing" && !things.some((thing) => thing.name === selection.name)) ||
@@ -660,11 +669,17 @@ class Studio {
         line.dataset.told = status.text;
         say(line, sentence(status.text));
       }
+      say(this.find(".note"), status.note ?? "");
     }
   }
 
   hint(text) {
     say(this.find(".status .hint"), byKeys(text));
+  }
+
+  /** Tells those who do not see the sheet where the keys are on it. */
+  tellPlace(text) {
+    this.find(".place-words").textContent = text;
   }
 
   say(text) {
@@ -700,6 +715,7 @@ class Studio {
       this.hint("Pull a body with the mouse or a finger; space plays");
       this.live.fit();
     }
+    this.guide.look();
   }
 
   startMotion() {
@@ -743,7 +759,7 @@ class Studio {
       if (tool.group) {
         add(place, "span", { className: "group", textContent: tool.group });
       }
-      const button = add(place, "button", { type: "button", value: name, title: byKeys(`${tool.hints[0]} (${tool.key.toUpperCase()})`) });
+      const button = add(place, "button", { type: "button", value: name, title: byKeys(`${tool.hints[0]} (${keyName(tool)})`) });
       button.append(icon(name));
       add(button, "span", { textContent: tool.label });
       button.addEventListener("click", () => {
@@ -770,6 +786,7 @@ class Studio {
     click(".zoom-out", () => this.sheet.zoom(0.8));
     click(".fit", () => this.fit());
     click(".export", () => exportFmu(this));
+    click(".first-build", () => this.guide.begin());
     click(".start-here", () => this.startHere());
     click(".file-menu", (event) => this.fileMenu(event));
     click(".help", () => this.help());
@@ -837,7 +854,10 @@ class Studio {
         event.stopImmediatePropagation();
         act();
       }
-      return;
+      // With Ctrl the keys click on ground.
+      if (key !== "Enter") {
+        return;
+      }
     }
     if (inField) {
       if (key === "Escape" && target.closest(".typed")) {
@@ -900,6 +920,7 @@ class Studio {
         { label: "Video (MP4 or WebM)", act: () => saveVideo(this), why: this.sheet.svg ? (videoKind() ? "" : "This browser records none") : "Nothing is drawn" },
         { label: "Copy a web link", act: () => shareLink(this) },
         "",
+        { label: "First mechanism, step by step", act: () => this.guide.begin() },
         { label: "Help", key: "F1", act: () => this.help() },
       ],
       [box.left, box.bottom + 2],
@@ -1018,9 +1039,11 @@ class Studio {
       }
       const keys = add(form, "dl", { className: "keys-list" });
       const told = [
-        ...Object.values(TOOLS).flatMap((tool) => (tool.label ? [[tool.key.toUpperCase(), tool.label]] : [])),
+        ...Object.values(TOOLS).flatMap((tool) => (tool.label ? [[keyName(tool), tool.label]] : [])),
         ["Shift", "without grid and directions"],
         ["digits", "the length of what is drawn"],
+        ["arrows, Enter", "move on the sheet and click, with Ctrl on ground"],
+        ["PageUp, PageDown", "go to the point before, to the next one"],
         ["Esc", "give up; then Select"],
         ["Delete", "remove what is selected"],
         ["Ctrl+D, F2", "duplicate, rename what is selected"],

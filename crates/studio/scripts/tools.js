@@ -21,6 +21,17 @@ const ICONS = {
   mass: "M12 12m-8 0a8 8 0 1 0 16 0a8 8 0 1 0-16 0 M12 4V20 M4 12H20",
   driver: "M19 12a7 7 0 1 1-3-5.700 M16 2v5h-5 M12 12h.01",
   freedom: "M12 3v10 M12 13m-4 4a4 4 0 1 0 8 0a4 4 0 1 0-8 0 M5 6c-2 4-2 8 0 12 M19 6c2 4 2 8 0 12",
+  weld: "M4 18L12 10L20 18 M12 10m-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0 M9.500 7.500l5 5 M14.500 7.500l-5 5",
+  curve: "M2 17c5-14 9-14 11-6s5 6 9-3 M13 11m-2 0a2 2 0 1 0 4 0a2 2 0 1 0-4 0",
+  rope: "M12 9m-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0 M7 9v11 M17 9v8 M15 17h4v4h-4z M12 9h.01",
+  coupling: "M6 12m-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0 M18 12m-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0 M10.500 10.500h3 M10.500 13.500h3",
+  friction: "M3 18H21 M7 10H17V18H7Z M3 18l3 3 M9 18l3 3 M15 18l3 3 M20 7H11 M14 4l-3 3 3 3",
+  stop: "M4 4V20 M20 4V20 M8 12H16 M10.500 9.500L8 12l2.500 2.500 M13.500 9.500L16 12l-2.500 2.500",
+  bar: "M6.500 21a4.500 4.500 0 0 1-3.500-7.500L13.500 4a4.500 4.500 0 0 1 7 6L10 19.500a4.500 4.500 0 0 1-3.500 1.500Z M6.500 16.500h.01 M17 7h.01",
+  disc: "M12 12m-8 0a8 8 0 1 0 16 0a8 8 0 1 0-16 0 M12 12h.01 M12 12L18 7",
+  outline: "M4 19L7 6L17 4L20 13L13 20Z",
+  hole: "M3 4H21V20H3Z M12 12m-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0",
+  contact: "M8 12m-5.500 0a5.500 5.500 0 1 0 11 0a5.500 5.500 0 1 0-11 0 M13.500 5V21 M13.500 5H20V21H13.500",
   trace: "M3 18c3-14 9-14 10-5s6 4 8-6 M3 18h.01",
 };
 
@@ -62,11 +73,33 @@ function isBetween([x, y], [u, v], [a, b]) {
 const NEEDS_POINT = "Choose a pin or the end of a link";
 
 /**
+ * The key of a tool as it is told; a capital letter is one with Shift.
+ * @param {Tool} tool
+ */
+export function keyName({ key }) {
+  return key === key.toLowerCase() ? key.toUpperCase() : `Shift+${key}`;
+}
+
+/**
  * @typedef {{
  *   label: string | null, key?: string, group?: string, hints: string[], only?: string[], typed?: boolean,
  *   least?: number, most?: number, gesture?: (found: any[]) => import("../../page/scripts/messages").Gesture,
  * }} Tool
  */
+
+/**
+ * A tool that adds a shape; the last click of one that is round sets its radius.
+ * @param {import("../../page/scripts/messages").ShapeKind} shape
+ * @returns {(found: any[]) => import("../../page/scripts/messages").Gesture}
+ */
+function byShape(shape) {
+  return (found) => {
+    const corners = shape === "outline" ? found : found.slice(0, -1);
+    const points = corners.map((each) => target(each, each));
+    const { owner } = found[0];
+    return { kind: "shape", shape, points, ...(owner ? { body: owner } : {}), ...(shape === "outline" ? {} : { rim: found[found.length - 1].at }) };
+  };
+}
 
 /**
  * A tool whose clicks are taken as they come.
@@ -115,6 +148,43 @@ export const TOOLS = {
     most: 40,
     gesture: (found) => ({ kind: "link", points: found.map((each) => target(each, each)) }),
   },
+  bar: {
+    label: "Bar",
+    key: "B",
+    group: "Shapes",
+    hints: ["Click one end of the bar, on a body", "Click the other end, on the same body", "Click how wide the bar is"],
+    only: ["part", "part", "rim"],
+    ...byClicks(3, byShape("bar")),
+  },
+  disc: {
+    label: "Disc",
+    key: "D",
+    hints: ["Click the centre of the disc: on a body, with Ctrl on ground", "Click a point of its rim"],
+    only: ["owner", "rim"],
+    ...byClicks(2, byShape("disc")),
+  },
+  outline: {
+    label: "Outline",
+    key: "O",
+    hints: ["Click the first corner: on a body, with Ctrl on ground", "Click the next corner", "Click more corners; Enter, or the first corner again, ends"],
+    only: ["owner", "any"],
+    least: 3,
+    most: 40,
+    gesture: byShape("outline"),
+  },
+  hole: {
+    label: "Hole",
+    key: "H",
+    hints: ["Click the centre of the hole, in a shape", "Click a point of its rim"],
+    only: ["owner", "rim"],
+    ...byClicks(2, byShape("hole")),
+  },
+  contact: {
+    label: "Contact",
+    key: "C",
+    hints: ["Click a shape", "Click the shape of another body that it touches"],
+    ...byClicks(2, ([a, b]) => ({ kind: "contact", points: [target(a), target(b)] })),
+  },
   pivot: {
     label: "Pivot",
     key: "g",
@@ -140,6 +210,30 @@ export const TOOLS = {
     hints: ["Click the pin that slides", "Click the bar along which it slides"],
     only: ["point", "body"],
     ...byClicks(2, ([found, bar]) => ({ kind: "slot", marker: ownMarker(found.point), body: bar.body })),
+  },
+  weld: {
+    label: "Weld",
+    key: "x",
+    hints: ["Click the pin that is to be fixed, or the free end that ground holds"],
+    only: ["pin"],
+    ...byClicks(1, ([found]) => (found.joint ? { kind: "weld", joint: found.joint } : { kind: "weld_to_ground", marker: ownMarker(found.point) })),
+  },
+  curve: {
+    label: "Track",
+    key: "j",
+    hints: ["Click the pin that runs in the track", "Click the next point of the track", "Click more points; Enter, or the last point again, ends"],
+    only: ["point", "any"],
+    least: 3,
+    most: 40,
+    gesture: ([first, ...others]) => ({ kind: "curve", marker: ownMarker(first.point), points: others.map(({ at }) => at) }),
+  },
+  rope: {
+    label: "Rope",
+    key: "y",
+    hints: ["Click the first end of the rope; on the bare sheet it is on ground", "Click the next point", "Click more points; Enter, or the last point again, ends"],
+    least: 2,
+    most: 20,
+    gesture: (found) => ({ kind: "rope", points: found.map((each) => target(each, { own: true })) }),
   },
   cylinder: {
     label: "Cylinder",
@@ -188,8 +282,15 @@ export const TOOLS = {
       const roller = [...found].reverse().find(({ point }) => point && !point.ground);
       const [centre, at] = roller === found[0] ? [found[1], roller] : found;
       const of = roller && ownMarker(roller.point);
-      return { kind: "cam", point: target(centre, { ground: true }), contact: at.at, ...(of ? { of } : {}) };
+      return { kind: "cam", point: target(centre, { ground: true }), contact: at.at, ...(of ? { of } : {}), ...(at.follower ? { follower: at.follower } : {}) };
     }),
+  },
+  coupling: {
+    label: "Coupling",
+    key: "z",
+    hints: ["Click the pin or slider that leads", "Click the one that follows"],
+    only: ["joint"],
+    ...byClicks(2, ([a, b]) => ({ kind: "coupling", joints: [a.joint, b.joint] })),
   },
   spring: {
     label: "Spring",
@@ -218,6 +319,20 @@ export const TOOLS = {
     only: ["body"],
     ...byClicks(1, ([found]) => ({ kind: "mass", body: found.body })),
   },
+  friction: {
+    label: "Friction",
+    key: "n",
+    hints: ["Click the pin or slider that has friction"],
+    only: ["joint"],
+    ...byClicks(1, ([found]) => ({ kind: "friction", joint: found.joint })),
+  },
+  stop: {
+    label: "Stops",
+    key: "e",
+    hints: ["Click the pin or slider that goes no further"],
+    only: ["joint"],
+    ...byClicks(1, ([found]) => ({ kind: "stop", joint: found.joint })),
+  },
   driver: {
     label: "Driver",
     key: "d",
@@ -242,11 +357,22 @@ export const TOOLS = {
   },
 };
 
+/**
+ * Returns what the next click of a tool must be at; nothing if it may be anywhere.
+ * @param {Tool} tool
+ */
+export function wantedAt({ only }, index) {
+  return only?.[Math.min(index, only.length - 1)];
+}
+
 /** Returns why a tool cannot use what was found at its next click, or nothing. */
 export function unfit(tool, index, found) {
-  const wanted = tool.only?.[Math.min(index, tool.only.length - 1)];
-  if (wanted === "point" && !found.point) {
+  const wanted = wantedAt(tool, index);
+  if (["point", "pin"].includes(wanted) && !found.point) {
     return NEEDS_POINT;
+  }
+  if (["part", "owner"].includes(wanted) && !found.point && !found.body && !found.ground) {
+    return "A shape is part of a body: click one of its points or its bar";
   }
   if (wanted === "body" && !found.body) {
     return "Choose a body: click on its bar";

@@ -14,7 +14,7 @@ const EDITOR_LICENCES: &str = include_str!("../../../../studio/editor/licenses.t
 const EDITOR: &str = include_str!("../../../../studio/editor/bundle.js");
 const LIVE: &str = include_str!("../../../../page/scripts/live.html");
 /// The scripts, behind those of a mechanism that moves; each uses only those before it.
-const OWN_SCRIPTS: [&str; 14] = [
+const OWN_SCRIPTS: [&str; 15] = [
     include_str!("../../../../studio/scripts/units.js"),
     include_str!("../../../../studio/scripts/dialogs.js"),
     include_str!("../../../../studio/scripts/disk.js"),
@@ -25,6 +25,7 @@ const OWN_SCRIPTS: [&str; 14] = [
     include_str!("../../../../studio/scripts/tools.js"),
     include_str!("../../../../studio/scripts/design.js"),
     include_str!("../../../../studio/scripts/inspector.js"),
+    include_str!("../../../../studio/scripts/guide.js"),
     include_str!("../../../../studio/scripts/export.js"),
     include_str!("../../../../studio/scripts/caret.js"),
     include_str!("../../../../studio/scripts/complete.js"),
