@@ -198,7 +198,7 @@ def test_one_unit_is_chosen_for_sheet_forms_and_rows(sheet):
     sheet.page.reload()
     sheet.page.wait_for_selector(".studio.ready")
     sheet.tool("link")
-    sheet.click((0.1, 0))
+    sheet.click((0.08, 0))
     sheet.page.keyboard.type("7")
     sheet.press("Enter")
     assert sheet.file["bodies"]["link_2"]["markers"]["D"][0] == 0.07

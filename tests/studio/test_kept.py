@@ -209,7 +209,8 @@ def served(sheet, tmp_path):
     sheet.page.wait_for_selector(".studio.ready")
     yield sheet, server, file
     server.stop()
-    # The browser tells of requests that fail.
+    # The browser tells of requests that fail, until its page is closed.
+    sheet.page.close()
     sheet.errors[:] = [error for error in sheet.errors if "Failed to load resource" not in error]
 
 

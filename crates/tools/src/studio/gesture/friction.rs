@@ -16,9 +16,11 @@ pub(super) fn friction(editing: &mut Editing, name: &str) -> Result<(), Refusal>
     } else if joint.guide().is_some_and(|guide| guide.aside.is_none()) {
         String::new()
     } else {
-        return Err(
-            format!("joint `{name}` has no friction: choose a pin, a slider or a slot").into(),
-        );
+        return Err(format!(
+            "the studio gives friction to pins, sliders and slots: write that of joint `{name}` in \
+             the text"
+        )
+        .into());
     };
     let known = editing.text.keys(&["friction"]);
     let of_joint = format!("\"{name}\"");
