@@ -60,7 +60,7 @@ impl Watch {
         let server = Server::new(&self.listening, 0)?;
         if solver.is_none() && self.conditions.is_empty() {
             let note = "no solver for pages was found, so the page plays a motion and cannot be \
-                        moved by hand: run `make page` and `make install`";
+                        moved by hand: install the solver as docs/install.md says";
             Message::Note(note.to_owned()).show();
         }
         // With stdout closed the browser may have the address already.

@@ -52,12 +52,12 @@ pub(in crate::cli) fn find(solver: Solver) -> Result<Option<Cow<'static, [u8]>>,
 pub(in crate::cli) fn demand(solver: Solver) -> Result<Cow<'static, [u8]>, Error> {
     find(solver)?.ok_or_else(|| {
         Error::Usage(match solver {
-            Solver::Page => "no solver for pages was found beside this program: run `make page` and \
-                             `make install`, or name it with --solver; `biela run --animate` writes \
-                             a page that plays a motion"
+            Solver::Page => "no solver for pages was found beside this program: install it as \
+                             docs/install.md says, or name it with --solver; `biela run --animate` \
+                             writes a page that plays a motion"
                 .to_owned(),
-            Solver::Studio => "no solver for the studio was found beside this program: run `make \
-                               studio` and `make install`"
+            Solver::Studio => "no solver for the studio was found beside this program: install it \
+                               as docs/install.md says"
                 .to_owned(),
         })
     })

@@ -137,7 +137,7 @@ fn export_says_what_it_leaves_out() {
         stderr(&biela(&[&["export", "mechanisms/tlv.toml", "-o", fmu], options].concat()).success())
     };
     let message = told(&[]);
-    let end = "; no page to move by hand, for which `make page` builds the solver)\n";
+    let end = "; no page to move by hand: no solver for pages is installed)\n";
     assert!(message.ends_with(end), "{message}");
     let message = told(&["--no-page"]);
     assert!(!message.contains("page"), "{message}");
