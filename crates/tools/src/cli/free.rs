@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::given::conditions::Conditions;
-use super::given::input::Input;
+use super::given::input::{Input, warn_of_misfits};
 use super::given::signals::Signals;
 use super::motion::release;
 use super::told::error::Error;
@@ -28,12 +28,22 @@ impl AtRest {
         let scenario = conditions.scenario(mechanism, start, None)?;
         let solver = scenario.solver(input.assemble()?);
         let solver = solver.map_err(|error| input.error_at(start, &error))?;
+        warn_of_misfits(&solver);
         Self::start(input.source.name(), solver, scenario.signals)
     }
 
     /// Begins at a solver's pose, and warns of parts that overlap there; `file` names the mechanism in
     /// messages.
     pub(super) fn start(file: &str, solver: Solver, signals: Signals) -> Result<Self, Error> {
+        let mut start = Self::begin(file, solver, signals)?;
+        let happenings = start.motion.happenings();
+        let overlaps = happenings.filter(|notice| matches!(notice, Notice::Overlap(..)));
+        overlaps.for_each(|overlap| Message::from(overlap).show());
+        Ok(start)
+    }
+
+    /// Begins at a solver's pose; `file` names the mechanism in messages.
+    pub(super) fn begin(file: &str, solver: Solver, signals: Signals) -> Result<Self, Error> {
         let mut motion = Motion::new(solver);
         motion.seek_forces();
         let released = release(&mut motion, &signals);
@@ -42,9 +52,6 @@ impl AtRest {
             let why = dynamics::Error::NoFreedom;
             return Err(Error::Usage(format!("{file}: {why}")));
         }
-        let happenings = motion.happenings();
-        let overlaps = happenings.filter(|notice| matches!(notice, Notice::Overlap(..)));
-        overlaps.for_each(|overlap| Message::from(overlap).show());
         motion.take_rates();
         Ok(Self {
             file: file.to_owned(),

@@ -32,8 +32,9 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 pub use library::{
-    archive, archive_with, check, check_parameter, describe_end, gif, parameter_value, shipped,
-    shipped_text, unknown_name,
+    ArchiveOptions, Failed, PlatformRow, ToldRange, archive, archive_with, check, check_order,
+    check_parameter, convert, describe_end, gif, import, model_description_of, new, page,
+    parameter_value, picture, platforms, range, report, shipped, shipped_text, unknown_name,
 };
 
 /// Planar mechanisms as text files: check them, run them, export them as FMUs.

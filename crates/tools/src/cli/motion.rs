@@ -1,6 +1,7 @@
 //! A mechanism that moves along the motions and signals of its drivers.
 
 use super::given::conditions::Scenario;
+use super::given::input::warn_of_misfits;
 use super::given::signals::Signals;
 use super::told::message::Message;
 use biela::dynamics::{self, Event, Motion, Notice};
@@ -22,6 +23,7 @@ impl SignalledMotion {
     /// Moves from the file's pose, which `home_solver` has, to the scenario's start.
     pub(super) fn start(home_solver: Solver, scenario: Scenario) -> Result<Self, Error> {
         let solver = scenario.solver(home_solver)?;
+        warn_of_misfits(&solver);
         Self::from(solver, scenario.signals, scenario.start)
     }
 

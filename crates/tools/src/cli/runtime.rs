@@ -15,6 +15,14 @@ pub(super) struct FoundLibrary {
 }
 
 impl FoundLibrary {
+    /// Returns the place of the library, in words.
+    pub(super) fn place(&self) -> String {
+        self.path.as_ref().map_or_else(
+            || "in this program".to_owned(),
+            |path| path.display().to_string(),
+        )
+    }
+
     /// Returns the oldest version of glibc that the library runs with; `None` if it uses none.
     pub(super) fn glibc(&self) -> Option<String> {
         let version = glibc(&self.library.content);
@@ -46,8 +54,8 @@ pub(super) fn find(folder: Option<&Path>) -> Result<Vec<FoundLibrary>, Error> {
             "`{}` has no runtime library; expected for example `linux64/biela.so` in it",
             folder.display()
         ),
-        None => "no runtime library was found beside this program: run `make install`, or name \
-                 their folder with --runtime"
+        None => "no runtime library was found beside this program: install it as docs/install.md \
+                 says, or name the folder of libraries with --runtime"
             .to_owned(),
     }))
 }

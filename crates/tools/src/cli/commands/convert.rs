@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use crate::cli::given::assigning::unknown_name;
 use crate::cli::given::conditions::Conditions;
 use crate::cli::given::input::Input;
 use crate::cli::given::input_files::InputFiles;
@@ -71,6 +72,23 @@ impl Program {
         };
         Ok((text, pins.notes))
     }
+}
+
+/// Returns the file for the program of this name, with remarks.
+///
+/// # Errors
+///
+/// There is no such program, or it cannot have the mechanism.
+pub(in crate::cli) fn converted(to: &str, solver: &Solver) -> Result<(String, Vec<Note>), String> {
+    let program = Program::from_str(to, false).map_err(|_| {
+        let programs = Program::value_variants().iter();
+        let names =
+            programs.filter_map(|program| Some(program.to_possible_value()?.get_name().to_owned()));
+        let names: Vec<String> = names.collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        unknown_name("program", to, &names)
+    })?;
+    program.file(solver).map_err(|error| error.to_string())
 }
 
 impl Convert {

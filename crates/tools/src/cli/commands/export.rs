@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
 use clap::Args;
@@ -21,6 +22,10 @@ use crate::exchange::write_ssp;
 use biela::dynamics::KeptStart;
 use biela::fmi::{Platform, RuntimeLibrary, Version, describe, variables, write_fmu};
 use biela::kinematics::Solver;
+use biela::mechanism::Mechanism;
+
+/// Reason why there is no system with an FMU of FMI 3.0.
+pub(in crate::cli) const NO_SYSTEM: &str = "a system of SSP 1.0 holds FMUs of FMI 2.0";
 
 /// Export a mechanism as an FMU, for co-simulation and for model exchange.
 ///
@@ -80,20 +85,19 @@ pub(in crate::cli) struct Export {
 
 impl Export {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
-        let generated = generation_time()?;
         let input = self.settings.read(&self.file)?;
         let mechanism = &input.mechanism;
         let mut files = InputFiles::new(&self.file, mechanism);
         if let Some(path) = self.model_description {
             files.refuse_as_outputs(&[Some(&path)])?;
             let solver = assemble(&input)?;
-            let description = describe(mechanism, solver.structure(), self.fmi);
-            return write(&path, &description.write(generated.as_deref()));
+            let description = model_description(mechanism, &solver, self.fmi)?;
+            return write(&path, &description);
         }
         if self.ssp && self.fmi == Version::Fmi3 {
-            return Err(Error::Usage(
-                "--ssp: a system of SSP 1.0 holds FMUs of FMI 2.0; leave out --fmi 3".to_owned(),
-            ));
+            return Err(Error::Usage(format!(
+                "--ssp: {NO_SYSTEM}; leave out --fmi 3"
+            )));
         }
         let extension = if self.ssp { "ssp" } else { "fmu" };
         let path = self
@@ -115,15 +119,12 @@ impl Export {
             page_solver::find(page_solver::Solver::Page)?
         };
         if page.is_none() && !self.no_page {
-            packed += "; no page to move by hand, for which `make page` builds the solver";
+            packed += "; no page to move by hand: no solver for pages is installed";
         }
         let form = Form::new(self.fmi, self.terminals);
         let mut content = pack(&input, &solver, form, &libraries, page.as_deref())?;
         if self.ssp {
-            let mut archive = Cursor::new(Vec::new());
-            write_ssp(&mut archive, mechanism, &variables(mechanism), &content)
-                .map_err(Error::Archive)?;
-            content = archive.into_inner();
+            content = system(mechanism, &content)?;
         }
         write(&path, &content)?;
         let name = if is_stdout(&path) {
@@ -164,8 +165,8 @@ fn warn_of_old(libraries: &[RuntimeLibrary]) {
         let name = library.platform.name;
         let version = env!("CARGO_PKG_VERSION");
         let warning = format!(
-            "the library for {name} is of another version of biela than {version}: build it anew by \
-             `make runtimes`, and install it by `make install`"
+            "the library for {name} is of another version of biela than {version}: install that of \
+             {version}, as docs/install.md says"
         );
         Message::Warning(warning).show();
     }
@@ -197,6 +198,23 @@ pub(in crate::cli) fn pack(
     )
     .map_err(Error::Archive)?;
     Ok(archive.into_inner())
+}
+
+/// Returns a system of SSP 1.0 with the FMU of a mechanism.
+pub(in crate::cli) fn system(mechanism: &Arc<Mechanism>, fmu: &[u8]) -> Result<Vec<u8>, Error> {
+    let mut archive = Cursor::new(Vec::new());
+    write_ssp(&mut archive, mechanism, &variables(mechanism), fmu).map_err(Error::Archive)?;
+    Ok(archive.into_inner())
+}
+
+/// Returns the modelDescription.xml of the FMU of a mechanism that `solver` has assembled.
+pub(in crate::cli) fn model_description(
+    mechanism: &Arc<Mechanism>,
+    solver: &Solver,
+    version: Version,
+) -> Result<Vec<u8>, Error> {
+    let description = describe(mechanism, solver.structure(), version);
+    Ok(description.write(generation_time()?.as_deref()))
 }
 
 /// Reads the name of a platform.

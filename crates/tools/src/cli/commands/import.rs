@@ -1,11 +1,11 @@
 //! `biela import`
 
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use crate::cli::given::assigning::unknown_name;
 use crate::cli::given::input_files::InputFiles;
 use crate::cli::render::render;
 use crate::cli::results::new_file::{create, exists, tell_now_check};
@@ -46,36 +46,13 @@ pub(in crate::cli) struct Import {
 
 impl Import {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
-        let length = LengthUnit::ALL
-            .into_iter()
-            .find(|unit| Some(unit.name()) == self.length.as_deref());
-        let (name, content) = self.content()?;
-        let failed = |error| Error::Import {
-            file: name.clone(),
-            error,
-        };
-        // A link has no extension behind its last point.
-        let extension = match self.link() {
-            Some(_) => String::new(),
-            None => extension(&self.file),
-        };
-        let format = Format::of(&extension, &content).map_err(failed)?;
-        let stem = match self.link() {
-            Some(_) => OsStr::new("mechanism"),
-            None => Path::new(&name).file_stem().unwrap_or_default(),
-        };
-        let stem = stem.to_string_lossy();
-        let stem = stem
-            .trim_end_matches(".pmks")
-            .trim_end_matches(".pylinkage");
-        let draft = format.read(&content, stem, length).map_err(failed)?;
+        let (draft, text) = read(&self.file, self.length.as_deref())?;
         let usual = PathBuf::from(format!("{}.toml", draft.mechanism_name()));
         let path = self.output.clone().unwrap_or(usual);
         InputFiles::only("the imported file", &self.file).refuse_as_outputs(&[Some(&path)])?;
         if self.output.is_none() && path.exists() {
             return Err(exists(&path));
         }
-        let text = draft.write(&file_name(&name));
         match self.output {
             Some(_) => write(&path, text.as_bytes())?,
             None => create(&path, &text)?,
@@ -85,22 +62,43 @@ impl Import {
         }
         answer(&path, &draft, text)
     }
+}
 
-    /// Returns the name and the bytes of the file, or a link itself.
-    fn content(&self) -> Result<(String, Vec<u8>), Error> {
-        if let Some(link) = self.link() {
-            return Ok(("the link".to_owned(), link.into_bytes()));
-        }
-        let content = std::fs::read(&self.file).map_err(Error::read(&self.file))?;
-        Ok((self.file.to_string_lossy().into_owned(), content))
-    }
-
-    /// Returns the argument if it is a link.
-    fn link(&self) -> Option<String> {
-        let argument = self.file.to_string_lossy();
-        let is_link = argument.starts_with("https://") || argument.starts_with("http://");
-        is_link.then(|| argument.into_owned())
-    }
+/// Reads a file, or a link of PMKS+ itself, whose lengths have the unit of this name where it does not
+/// tell it; returns what was read, and the text of a mechanism file.
+pub(in crate::cli) fn read(file: &Path, length: Option<&str>) -> Result<(Draft, String), Error> {
+    let units = LengthUnit::ALL.map(LengthUnit::name);
+    let place = length.map(|name| {
+        let place = units.iter().position(|unit| *unit == name);
+        place.ok_or_else(|| Error::Usage(unknown_name("unit of lengths", name, &units)))
+    });
+    let length = place.transpose()?.map(|place| LengthUnit::ALL[place]);
+    let argument = file.to_string_lossy();
+    let is_link = argument.starts_with("https://") || argument.starts_with("http://");
+    // A link has no extension behind its last point.
+    let (name, content, extension, stem) = if is_link {
+        let content = argument.as_bytes().to_vec();
+        (
+            "the link".into(),
+            content,
+            String::new(),
+            "mechanism".into(),
+        )
+    } else {
+        let content = std::fs::read(file).map_err(Error::read(file))?;
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        (argument, content, extension(file), stem)
+    };
+    let failed = |error| Error::Import {
+        file: name.to_string(),
+        error,
+    };
+    let format = Format::of(&extension, &content).map_err(failed)?;
+    let stem = stem.trim_end_matches(".pmks");
+    let stem = stem.trim_end_matches(".pylinkage");
+    let draft = format.read(&content, stem, length).map_err(failed)?;
+    let text = draft.write(&file_name(&name));
+    Ok((draft, text))
 }
 
 /// Shows the reader's remarks on the written file, and names the next command.

@@ -1,10 +1,11 @@
 //! `biela new`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use crate::cli::given::assigning::unknown_name;
 use crate::cli::results::new_file::{create, exists, tell_now_check};
 use crate::cli::told::error::Error;
 use biela::mechanism::{is_identifier, similar_identifier};
@@ -132,39 +133,41 @@ static TEMPLATES: &[Template] = &[
 
 impl New {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
-        if !is_identifier(&self.name) {
-            let similar = similar_identifier(&self.name);
-            let example = similar.map(|name| format!("; expected for example `{name}`"));
-            return Err(Error::Usage(format!(
-                "`{}` is no name of a mechanism: letters, digits and `_`, not starting with a \
-                 digit, no word of the C language, and no device of Windows such as `con`{}",
-                self.name,
-                example.unwrap_or_default()
-            )));
-        }
-        let template = TEMPLATES.iter().find(|template| template.name == self.from);
-        let template = template.expect("the parser of arguments knows the same names");
         let folder = self.folder.unwrap_or_default();
-        let text = renamed(template, &self.name);
-        let mut files = vec![(format!("{}.toml", self.name), text.as_str())];
-        files.extend(
-            template
-                .tables
-                .iter()
-                .map(|(name, text)| ((*name).to_owned(), *text)),
-        );
-        for (name, _) in &files {
-            let path = folder.join(name);
-            if path.exists() {
-                return Err(exists(&path));
-            }
-        }
-        for (name, text) in &files {
-            create(&folder.join(name), text)?;
-        }
-        tell_now_check(&folder.join(&files[0].0));
+        tell_now_check(&write_new(&self.name, &self.from, &folder)?);
         Ok(())
     }
+}
+
+/// Writes a copy of a mechanism that comes with biela under another name, and the tables that it names;
+/// returns the path of the mechanism.
+pub(in crate::cli) fn write_new(name: &str, from: &str, folder: &Path) -> Result<PathBuf, Error> {
+    if !is_identifier(name) {
+        let similar = similar_identifier(name);
+        let example = similar.map(|name| format!("; expected for example `{name}`"));
+        return Err(Error::Usage(format!(
+            "`{name}` is no name of a mechanism: letters, digits and `_`, not starting with a \
+             digit, no word of the C language, and no device of Windows such as `con`{}",
+            example.unwrap_or_default()
+        )));
+    }
+    let template = TEMPLATES.iter().find(|template| template.name == from);
+    let template = template.ok_or_else(|| {
+        let names: Vec<&str> = TEMPLATES.iter().map(|template| template.name).collect();
+        Error::Usage(unknown_name("shipped mechanism", from, &names))
+    })?;
+    let text = renamed(template, name);
+    let own = folder.join(format!("{name}.toml"));
+    let mut files = vec![(own.clone(), text.as_str())];
+    let tables = template.tables.iter();
+    files.extend(tables.map(|(name, text)| (folder.join(name), *text)));
+    if let Some((path, _)) = files.iter().find(|(path, _)| path.exists()) {
+        return Err(exists(path));
+    }
+    for (path, text) in &files {
+        create(path, text)?;
+    }
+    Ok(own)
 }
 
 /// Returns the template's text under another name.
@@ -175,8 +178,6 @@ fn renamed(template: &Template, name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
     use biela::mechanism::{Mechanism, Source};
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::given::input::warn_of_misfits;
+use crate::cli::given::input::{Input, warn_of_misfits};
 use crate::cli::given::input_files::InputFiles;
 use crate::cli::given::settings::Settings;
 use crate::cli::pages::live;
@@ -63,16 +63,8 @@ impl Page {
             None => page_solver::demand(Solver::Page)?,
         };
         warn_of_misfits(&input.assemble()?);
-        let solver = match &self.share {
-            None => live::solver(&wasm),
-            Some(script) => live::solver_in(script),
-        };
-        let page = live::page(
-            &input.source,
-            &input.mechanism,
-            &solver,
-            self.studio.as_deref(),
-        );
+        let studio = self.studio.as_deref();
+        let page = page(&input, &wasm, self.share.as_deref(), studio);
         write(&path, page.as_bytes())?;
         if let Some(script) = script {
             write(&script, live::shared_solver(&wasm).as_bytes())?;
@@ -82,8 +74,20 @@ impl Page {
     }
 }
 
+/// Returns the page of a mechanism with a solver, which stands in the script `share` beside it if there
+/// is one; *Edit* leads to a `studio`.
+pub(in crate::cli) fn page(
+    input: &Input,
+    wasm: &[u8],
+    share: Option<&str>,
+    studio: Option<&str>,
+) -> String {
+    let solver = share.map_or_else(|| live::solver(wasm), live::solver_in);
+    live::page(&input.source, &input.mechanism, &solver, studio)
+}
+
 /// Returns the path of a file beside a page.
-fn beside(page: &Path, name: &str) -> Result<PathBuf, Error> {
+pub(in crate::cli) fn beside(page: &Path, name: &str) -> Result<PathBuf, Error> {
     let plain = Path::new(name).file_name().is_some_and(|file| file == name);
     if !plain || is_stdout(page) {
         return Err(Error::Usage(format!(

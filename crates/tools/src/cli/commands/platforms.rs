@@ -1,12 +1,12 @@
 //! `biela platforms`
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use crate::cli::results::output::print;
-use crate::cli::runtime;
+use crate::cli::runtime::{self, FoundLibrary};
 use crate::cli::told::error::Error;
 use biela::fmi::Platform;
 
@@ -26,24 +26,43 @@ pub(in crate::cli) struct Platforms {
 
 impl Platforms {
     pub(in crate::cli) fn run(self) -> Result<(), Error> {
-        let found = runtime::find(self.runtime.as_deref())?;
         let mut text = String::new();
-        for platform in Platform::ALL {
-            let found = found.iter().find(|f| f.library.platform == platform);
-            let (library, needs) = match found {
-                None => ("-".to_owned(), None),
-                Some(found) => (
-                    found.path.as_ref().map_or_else(
-                        || "in this program".to_owned(),
-                        |path| path.display().to_string(),
-                    ),
-                    found.glibc(),
-                ),
-            };
-            let needs = needs.map_or_else(String::new, |version| format!(", glibc {version}"));
-            let system = format!("{}{needs}", platform.system);
-            let _ = writeln!(text, "{:<16}{system:<34}{library}", platform.name);
+        for row in rows(self.runtime.as_deref())? {
+            let needs = row
+                .glibc
+                .map_or_else(String::new, |version| format!(", glibc {version}"));
+            let system = format!("{}{needs}", row.system);
+            let library = row.library.as_deref().unwrap_or("-");
+            let _ = writeln!(text, "{:<16}{system:<34}{library}", row.name);
         }
         print(&text)
     }
+}
+
+/// A platform, and what an FMU has for it.
+#[derive(Clone, Debug)]
+pub struct PlatformRow {
+    /// Name of the platform.
+    pub name: &'static str,
+    /// Operating system and processor.
+    pub system: &'static str,
+    /// Oldest version of glibc with which the library runs, if it uses one.
+    pub glibc: Option<String>,
+    /// Place of the library, in words; `None` without one.
+    pub library: Option<String>,
+}
+
+/// Returns all platforms, with the libraries in a folder, or those installed with this program.
+pub(in crate::cli) fn rows(folder: Option<&Path>) -> Result<Vec<PlatformRow>, Error> {
+    let found = runtime::find(folder)?;
+    let rows = Platform::ALL.into_iter().map(|platform| {
+        let found = found.iter().find(|f| f.library.platform == platform);
+        PlatformRow {
+            name: platform.name,
+            system: platform.system,
+            glibc: found.and_then(FoundLibrary::glibc),
+            library: found.map(FoundLibrary::place),
+        }
+    });
+    Ok(rows.collect())
 }

@@ -10,9 +10,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
-use derived::{DerivedRange, uses_rates};
+use derived::uses_rates;
 use follower::{at_speed, without_value};
-use forces::describe_largest;
+
+pub(in crate::cli) use derived::DerivedRange;
+pub(in crate::cli) use forces::LargestForces;
 
 use super::check::scientific;
 
@@ -84,14 +86,15 @@ impl Range {
             bounds,
             ..RangeSettings::default()
         };
-        self.check_speed(&input.mechanism)?;
+        check_speed(self.speed, &input.mechanism, "--speed")?;
         let mut solver = self.conditions.solver_at_start(&input)?;
         let driven = Arc::clone(solver.mechanism());
         let mut text = String::new();
         for &driver in &drivers {
             let start = solver.pose().drivers[driver.index()];
             let range = solver.range(driver, &settings);
-            if let Some(why) = out_of_reach(&driven, driver, start, bounds, &range) {
+            let options = ["--from", "--to"];
+            if let Some(why) = out_of_reach(&driven, driver, start, bounds, &range, options) {
                 let file = input.source.name().to_owned();
                 return Err(Error::Stopped { file, why });
             }
@@ -99,7 +102,8 @@ impl Range {
             describe(&mut text, &driven, driver, start, &range, &derived);
             if driven.has_dynamics() {
                 let speed = self.speed.unwrap_or(0.0);
-                describe_largest(&mut text, &mut solver, driver, &range, speed);
+                LargestForces::new(&mut solver, driver, &range, speed)
+                    .describe(&mut text, &driven, driver);
             }
             if let Some(path) = &self.csv {
                 write(path, table(&driven, driver, &range, &derived).as_bytes())?;
@@ -128,23 +132,6 @@ impl Range {
         Ok(())
     }
 
-    /// Refuses a speed that is not finite, or that has no effect.
-    fn check_speed(&self, mechanism: &Mechanism) -> Result<(), Error> {
-        match self.speed {
-            Some(speed) if !speed.is_finite() => Err(Error::Usage(format!(
-                "--speed is {speed}; expected a finite number"
-            ))),
-            Some(_) if !mechanism.has_dynamics() && !mechanism.derived.iter().any(uses_rates) => {
-                Err(Error::Usage(
-                    "--speed is of forces and of measures computed from velocities, but the \
-                     mechanism has neither `mass` nor `[forces]` nor such a measure"
-                        .to_owned(),
-                ))
-            }
-            _ => Ok(()),
-        }
-    }
-
     fn drivers(&self, mechanism: &Mechanism) -> Result<Vec<DriverId>, Error> {
         if let Some(name) = &self.driver {
             return Ok(vec![driver_named(mechanism, name)?]);
@@ -168,6 +155,26 @@ impl Range {
     }
 }
 
+/// Refuses a speed, an argument of this name, that is not finite or has no effect.
+pub(in crate::cli) fn check_speed(
+    speed: Option<f64>,
+    mechanism: &Mechanism,
+    name: &str,
+) -> Result<(), Error> {
+    match speed {
+        Some(speed) if !speed.is_finite() => Err(Error::Usage(format!(
+            "{name} is {speed}; expected a finite number"
+        ))),
+        Some(_) if !mechanism.has_dynamics() && !mechanism.derived.iter().any(uses_rates) => {
+            Err(Error::Usage(format!(
+                "{name} is of forces and of measures computed from velocities, but the mechanism has \
+                 neither `mass` nor `[forces]` nor such a measure"
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Returns the lines that tell the range of a driver from the solver's pose, and its chart.
 pub(in crate::cli) fn told(solver: &mut Solver, driver: DriverId) -> (String, Chart) {
     let mechanism = Arc::clone(solver.mechanism());
@@ -177,26 +184,27 @@ pub(in crate::cli) fn told(solver: &mut Solver, driver: DriverId) -> (String, Ch
     let mut text = String::new();
     describe(&mut text, &mechanism, driver, start, &range, &derived);
     if mechanism.has_dynamics() {
-        describe_largest(&mut text, solver, driver, &range, 0.0);
+        LargestForces::new(solver, driver, &range, 0.0).describe(&mut text, &mechanism, driver);
     }
     (text, chart(&mechanism, driver, &range, &derived))
 }
 
 /// Returns the reason why a range has no poses: from its start the driver does not get to the
-/// bounds.
-fn out_of_reach(
+/// bounds, which have these names.
+pub(in crate::cli) fn out_of_reach(
     mechanism: &Mechanism,
     driver: DriverId,
     start: f64,
     bounds: [Option<f64>; 2],
     range: &kinematics::Range,
+    [first, second]: [&str; 2],
 ) -> Option<String> {
     if !range.samples.is_empty() {
         return None;
     }
     let (option, value, end) = match bounds {
-        [Some(from), _] if start < from => ("--from", from, &range.upper),
-        [_, to] => ("--to", to?, &range.lower),
+        [Some(from), _] if start < from => (first, from, &range.upper),
+        [_, to] => (second, to?, &range.lower),
     };
     let of_driver = &mechanism.drivers[driver.index()];
     let value = with_unit(of_driver.coordinate.kind, value);

@@ -10,13 +10,14 @@ use clap::Args;
 
 use super::check::{equations, forces::Forces, scientific};
 use super::range::{told, with_unit};
-use crate::cli::given::conditions::Conditions;
+use crate::cli::given::conditions::{Conditions, Scenario};
 use crate::cli::given::input::{Input, misfits};
 use crate::cli::given::input_files::InputFiles;
 use crate::cli::pages::documentation::{about, parameter, table};
 use crate::cli::results::output::{tell_written, write};
 use crate::cli::results::picture::check_page;
 use crate::cli::told::error::Error;
+use crate::cli::told::message::Message;
 use crate::drawing::animation::fill;
 use crate::drawing::svg::{self, escape};
 use crate::drawing::{Diagram, Sheet};
@@ -63,17 +64,27 @@ impl Report {
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{name}_report.html")));
         InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&path)])?;
-        let mut solver = self.conditions.solver_at_start(&input)?;
-        let motion = motion::motion(&input, &self.conditions)?;
-        let page = page(&input, &mut solver, &motion)?;
+        let start = input.mechanism.simulation.start;
+        let scenario = self.conditions.scenario(&input.mechanism, start, None)?;
+        let (page, told) = page(&input, &scenario)?;
+        told.iter().for_each(Message::show);
         write(&path, page.as_bytes())?;
         tell_written(&path);
         Ok(())
     }
 }
 
-/// Returns the report of a mechanism at the solver's pose.
-fn page(input: &Input, solver: &mut Solver, motion: &str) -> Result<String, Error> {
+/// Returns the report of a mechanism at the start of a scenario, and what is worth knowing of it.
+pub(in crate::cli) fn page(
+    input: &Input,
+    scenario: &Scenario,
+) -> Result<(String, Vec<Message>), Error> {
+    let mut solver = scenario
+        .solver(input.assemble()?)
+        .map_err(|error| input.error(error))?;
+    let mut told = misfits(&solver);
+    let motion = motion::motion(input, scenario, &mut told)?;
+    let solver = &mut solver;
     let mechanism = Arc::clone(solver.mechanism());
     let diagram = Diagram {
         dimensions: true,
@@ -86,7 +97,7 @@ fn page(input: &Input, solver: &mut Solver, motion: &str) -> Result<String, Erro
         .iter()
         .filter_map(|variable| parameter(variable, &values));
     let parameters = table(&["Parameter", "Value", "Unit", "Limits", "Meaning"], rows);
-    Ok(fill(
+    let page = fill(
         PAGE,
         &[
             ("title", &escape(&mechanism.name)),
@@ -96,13 +107,14 @@ fn page(input: &Input, solver: &mut Solver, motion: &str) -> Result<String, Erro
             ("freedom", &freedom(solver)),
             ("pose", &pose(solver)),
             ("ranges", &ranges(solver)),
-            ("motion", motion),
+            ("motion", &motion),
             ("forces", &forces(input, solver)?),
             ("parameters", &parameters),
             ("file", &escape(input.source.text())),
             ("version", env!("CARGO_PKG_VERSION")),
         ],
-    ))
+    );
+    Ok((page, told))
 }
 
 /// Returns a sheet as a part of a page.

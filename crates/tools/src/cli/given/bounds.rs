@@ -39,15 +39,22 @@ impl Bounds {
                 .transpose()
         };
         let bounds = [value("--from", &self.from)?, value("--to", &self.to)?];
-        match bounds {
-            [Some(from), Some(to)] if from >= to => Err(Error::Usage(format!(
-                "--from, {}, must be less than --to, {}",
-                shown(from),
-                shown(to)
-            ))),
-            _ => Ok(bounds),
-        }
+        check_order(bounds, ["--from", "--to"])?;
+        Ok(bounds)
     }
+}
+
+/// Checks that the first of two values, which have these names, is less than the second.
+pub(in crate::cli) fn check_order(bounds: [Option<f64>; 2], names: [&str; 2]) -> Result<(), Error> {
+    let ([Some(from), Some(to)], [first, second]) = (bounds, names) else {
+        return Ok(());
+    };
+    if from < to {
+        return Ok(());
+    }
+    let [from, to] = [from, to].map(shown);
+    let message = format!("{first}, {from}, must be less than {second}, {to}");
+    Err(Error::Usage(message))
 }
 
 /// Returns the error for an option or a command that needs a driver, in a mechanism without any.

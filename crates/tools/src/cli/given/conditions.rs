@@ -131,7 +131,9 @@ impl Conditions {
         let start = input.mechanism.simulation.start;
         let scenario = self.scenario(&input.mechanism, start, None)?;
         let solver = scenario.solver(input.assemble()?);
-        solver.map_err(|error| input.error(error))
+        let solver = solver.map_err(|error| input.error(error))?;
+        warn_of_misfits(&solver);
+        Ok(solver)
     }
 
     /// Returns the value of an expression over the parameters in force, given by `option`. Warns of
@@ -190,7 +192,6 @@ impl Scenario {
         home_solver.start(&home, &path)?;
         let mut solver = Solver::new(Arc::clone(&self.mechanism))?;
         solver.restore(home_solver.pose());
-        warn_of_misfits(&solver);
         Ok(solver)
     }
 }

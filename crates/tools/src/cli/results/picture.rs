@@ -73,14 +73,23 @@ impl Format {
         width: u32,
         transparent: bool,
     ) -> Result<(), Error> {
-        let picture = match self {
-            Self::Svg => svg::write(sheet, width, transparent).into_bytes(),
-            Self::Png => png::write(sheet, width, transparent)
-                .ok_or_else(|| Error::Usage(format!("no PNG is {width} pixels wide")))?,
-        };
-        write(path, &picture)?;
+        write(path, &self.picture(sheet, width, transparent)?)?;
         tell_written(path);
         Ok(())
+    }
+
+    /// Returns a picture `width` pixels wide.
+    pub(in crate::cli) fn picture(
+        self,
+        sheet: &Sheet,
+        width: u32,
+        transparent: bool,
+    ) -> Result<Vec<u8>, Error> {
+        match self {
+            Self::Svg => Ok(svg::write(sheet, width, transparent).into_bytes()),
+            Self::Png => png::write(sheet, width, transparent)
+                .ok_or_else(|| Error::Usage(format!("no PNG is {width} pixels wide"))),
+        }
     }
 }
 

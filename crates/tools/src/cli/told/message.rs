@@ -36,6 +36,11 @@ impl Message {
         }
     }
 
+    /// Returns the text without the kind.
+    pub(in crate::cli) fn text(&self) -> &str {
+        self.parts().2
+    }
+
     /// Returns the kind, the style of the kind, and the text.
     fn parts(&self) -> (&'static str, impl Display, &str) {
         match self {

@@ -13,19 +13,19 @@ const UNIT_SPEED: f64 = 1.0;
 const NO_VALUE: f64 = 1e-12;
 
 /// A computed measure over the range of a driver.
-pub(super) struct DerivedRange {
+pub(in crate::cli) struct DerivedRange {
     /// Its values at the samples, not numbers where it has none.
-    pub(super) values: Vec<f64>,
+    pub(in crate::cli) values: Vec<f64>,
     /// Its least and its greatest value, infinite where it grows without bound; `None` without any
     /// value.
-    pub(super) extremes: Option<[Extreme; 2]>,
+    pub(in crate::cli) extremes: Option<[Extreme; 2]>,
     /// Speed of the driver \[m/s or rad/s\] if it uses rates.
     pub(super) speed: Option<f64>,
 }
 
 impl DerivedRange {
     /// Returns the computed measures of a mechanism. The pose is restored.
-    pub(super) fn all(
+    pub(in crate::cli) fn all(
         solver: &mut Solver,
         driver: DriverId,
         range: &Range,

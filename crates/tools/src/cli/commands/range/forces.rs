@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use super::about;
 use super::follower::{Follower, at_speed, without_value};
 use super::search::{Largest, Measured, largest};
-use biela::kinematics::{Error, ForceQuantity, Origin, Range, Reported, Solver};
-use biela::mechanism::{DriverId, shown};
+use biela::kinematics::{Error, Extreme, ForceQuantity, Origin, Range, Reported, Solver};
+use biela::mechanism::{DriverId, Mechanism, shown};
 
 /// Largest reaction that is rounding, as a part of the largest effort: that of a pin beside the one
 /// that a spring and its driver load.
@@ -60,78 +60,136 @@ impl<'a> Loads<'a> {
     }
 }
 
-/// Adds the largest effort of a driver that moves at a constant speed \[m/s or rad/s\] over its
-/// range, the largest force in a joint, and where forces have no value. The pose is restored. Dead
-/// points and change points, which have no forces, are told with the range.
-pub(super) fn describe_largest(
-    text: &mut String,
-    solver: &mut Solver,
-    driver: DriverId,
-    range: &Range,
+/// The largest forces over the range of a driver.
+pub(in crate::cli) struct LargestForces {
+    /// Speed of the driver \[m/s or rad/s\].
     speed: f64,
-) {
-    let mut loads = Loads::new(solver, driver, range, speed);
-    let (mut efforts, mut reactions) = (Vec::new(), Vec::new());
-    let (mut missing, mut reason) = (Vec::new(), None);
-    for sample in &range.samples {
-        let solved = loads.follower.visit(sample);
-        let exists = solved.is_ok();
-        efforts.push((sample.driver, exists.then(|| loads.effort())));
-        let reaction = exists.then(|| loads.reaction()).flatten();
-        reactions.push((sample.driver, reaction));
-        if let Err(error) = solved
-            && !matches!(error, Error::Singular { .. })
-        {
-            missing.push(sample.driver);
-            reason.get_or_insert(error);
+    /// Its largest effort, with the sign \[N or N m\].
+    effort: Option<Largest<f64>>,
+    /// The largest force in a joint \[N\], and the joint, if it is more than rounding.
+    reaction: Option<Largest<usize>>,
+    /// Values of the driver at samples without forces, dead points and change points apart; the cause
+    /// at the first.
+    missing: (Vec<f64>, Option<Error>),
+    samples: usize,
+}
+
+impl LargestForces {
+    /// Finds those of a driver that moves at a constant speed \[m/s or rad/s\]. The pose is restored.
+    pub(in crate::cli) fn new(
+        solver: &mut Solver,
+        driver: DriverId,
+        range: &Range,
+        speed: f64,
+    ) -> Self {
+        let mut loads = Loads::new(solver, driver, range, speed);
+        let (mut efforts, mut reactions) = (Vec::new(), Vec::new());
+        let (mut missing, mut reason) = (Vec::new(), None);
+        for sample in &range.samples {
+            let solved = loads.follower.visit(sample);
+            let exists = solved.is_ok();
+            efforts.push((sample.driver, exists.then(|| loads.effort())));
+            let reaction = exists.then(|| loads.reaction()).flatten();
+            reactions.push((sample.driver, reaction));
+            // Dead points and change points, which have no forces, are told with the range.
+            if let Err(error) = solved
+                && !matches!(error, Error::Singular { .. })
+            {
+                missing.push(sample.driver);
+                reason.get_or_insert(error);
+            }
+        }
+        loads.follower.restore();
+        let effort = largest(&efforts, |at| {
+            loads.follower.follow(at).map(|()| loads.effort())
+        });
+        loads.follower.restore();
+        let reaction = largest(&reactions, |at| {
+            loads.follower.follow(at).and_then(|()| loads.reaction())
+        });
+        let most = match effort {
+            Some(Largest::Value((size, _), _)) => size,
+            _ => 0.0,
+        };
+        let is_rounding = |found: &Largest<usize>| match found {
+            Largest::Value((force, _), _) => *force <= NO_REACTION * most,
+            Largest::Unbounded(_) => false,
+        };
+        Self {
+            speed,
+            effort,
+            reaction: reaction.filter(|found| !is_rounding(found)),
+            missing: (missing, reason),
+            samples: range.samples.len(),
         }
     }
-    loads.follower.restore();
-    let effort = largest(&efforts, |at| {
-        loads.follower.follow(at).map(|()| loads.effort())
-    });
-    loads.follower.restore();
-    let reaction = largest(&reactions, |at| {
-        loads.follower.follow(at).and_then(|()| loads.reaction())
-    });
-    let mechanism = &loads.follower.mechanism;
-    let kind = mechanism.drivers[driver.index()].coordinate.kind;
-    let moving = at_speed(mechanism, driver, speed);
-    let mut tell = |words: &str| {
-        let _ = writeln!(text, "  {moving}, {words}");
-    };
-    let mut most = 0.0;
-    match effort {
-        Some(Largest::Value((size, effort), at)) => {
-            most = size;
-            let (effort, unit) = (shown(effort), kind.effort_unit().name);
-            let at = about(kind, at);
-            tell(&format!("largest effort {effort} {unit}, at {at}"));
-        }
-        Some(Largest::Unbounded(at)) => {
-            tell(&format!(
-                "effort grows without bound at {}",
-                about(kind, at)
-            ));
-        }
-        None => {}
+
+    /// Returns the largest effort, infinite where it grows without bound, and the driver's value there.
+    pub(in crate::cli) fn effort(&self) -> Option<Extreme> {
+        let extreme = |value, driver| Extreme { value, driver };
+        Some(match self.effort? {
+            Largest::Value((_, effort), at) => extreme(effort, at),
+            Largest::Unbounded(at) => extreme(f64::INFINITY, at),
+        })
     }
-    match reaction {
-        Some(Largest::Value((force, joint), at)) if force > NO_REACTION * most => {
-            let (force, at) = (shown(force), about(kind, at));
-            let joint = &mechanism.joints[joint].name;
-            tell(&format!(
-                "largest force in joint `{joint}` {force} N, at {at}"
-            ));
-        }
-        Some(Largest::Unbounded(at)) => {
-            let at = about(kind, at);
-            tell(&format!("forces in joints grow without bound at {at}"));
-        }
-        _ => {}
+
+    /// Returns the largest force in a joint, infinite where it grows without bound, the driver's value
+    /// there, and the joint.
+    pub(in crate::cli) fn reaction(&self) -> Option<(Extreme, Option<usize>)> {
+        let extreme = |value, driver| Extreme { value, driver };
+        Some(match self.reaction? {
+            Largest::Value((force, joint), at) => (extreme(force, at), Some(joint)),
+            Largest::Unbounded(at) => (extreme(f64::INFINITY, at), None),
+        })
     }
-    if let Some(reason) = reason {
-        let place = without_value(&missing, range.samples.len(), |at| about(kind, at));
-        tell(&format!("no forces {place}: {reason}"));
+
+    /// Says where forces have no value, and why.
+    pub(in crate::cli) fn without(
+        &self,
+        mechanism: &Mechanism,
+        driver: DriverId,
+    ) -> Option<String> {
+        let kind = mechanism.drivers[driver.index()].coordinate.kind;
+        let (missing, reason) = &self.missing;
+        let place = without_value(missing, self.samples, |at| about(kind, at));
+        Some(format!("no forces {place}: {}", reason.as_ref()?))
+    }
+
+    /// Adds the largest effort, the largest force in a joint, and where forces have no value.
+    pub(super) fn describe(&self, text: &mut String, mechanism: &Mechanism, driver: DriverId) {
+        let kind = mechanism.drivers[driver.index()].coordinate.kind;
+        let moving = at_speed(mechanism, driver, self.speed);
+        let mut tell = |words: &str| {
+            let _ = writeln!(text, "  {moving}, {words}");
+        };
+        match self.effort {
+            Some(Largest::Value((_, effort), at)) => {
+                let (effort, unit) = (shown(effort), kind.effort_unit().name);
+                let at = about(kind, at);
+                tell(&format!("largest effort {effort} {unit}, at {at}"));
+            }
+            Some(Largest::Unbounded(at)) => {
+                let at = about(kind, at);
+                tell(&format!("effort grows without bound at {at}"));
+            }
+            None => {}
+        }
+        match self.reaction {
+            Some(Largest::Value((force, joint), at)) => {
+                let (force, at) = (shown(force), about(kind, at));
+                let joint = &mechanism.joints[joint].name;
+                tell(&format!(
+                    "largest force in joint `{joint}` {force} N, at {at}"
+                ));
+            }
+            Some(Largest::Unbounded(at)) => {
+                let at = about(kind, at);
+                tell(&format!("forces in joints grow without bound at {at}"));
+            }
+            None => {}
+        }
+        if let Some(without) = self.without(mechanism, driver) {
+            tell(&without);
+        }
     }
 }

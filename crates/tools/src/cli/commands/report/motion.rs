@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use super::picture;
 use crate::cli::commands::check::oscillations;
 use crate::cli::free::AtRest;
-use crate::cli::given::conditions::Conditions;
+use crate::cli::given::conditions::Scenario;
 use crate::cli::given::input::Input;
+use crate::cli::given::signals::Signals;
 use crate::cli::given::times::Times;
 use crate::cli::motion::SignalledMotion;
 use crate::cli::results::column::{self, Output};
@@ -15,7 +16,9 @@ use crate::cli::results::picture::Format;
 use crate::cli::results::plot::Plot;
 use crate::cli::results::recorder::Recorder as _;
 use crate::cli::told::error::Error;
+use crate::cli::told::message::Message;
 use crate::drawing::svg::escape;
+use biela::kinematics::Solver;
 
 /// Most rows of the chart: more than its width in pixels show nothing further.
 const MOST_ROWS: u64 = 2_000;
@@ -23,19 +26,24 @@ const MOST_ROWS: u64 = 2_000;
 const MOST_EVENTS: usize = 40;
 
 /// Returns the motion from start to stop, if something moves by itself: nothing for a mechanism whose
-/// drivers are inputs.
-pub(super) fn motion(input: &Input, conditions: &Conditions) -> Result<String, Error> {
-    let start = input.mechanism.simulation.start;
-    let scenario = conditions.scenario(&input.mechanism, start, None)?;
+/// drivers are inputs. `told` takes what is worth knowing of it.
+pub(super) fn motion(
+    input: &Input,
+    scenario: &Scenario,
+    told: &mut Vec<Message>,
+) -> Result<String, Error> {
     let mechanism = scenario.mechanism.clone();
     if !mechanism.has_freedoms() && !mechanism.uses_time() {
         return Ok(String::new());
     }
+    let start = scenario.start;
     let columns = column::plotted(&Output::all(&mechanism));
     let needs = |is_needed: fn(&Output) -> bool| columns.iter().any(is_needed);
     let [forces, reactions] = [Output::uses_forces, Output::uses_reactions].map(needs);
     let refuse = |error| input.error_at(start, &error);
-    let mut moving = SignalledMotion::start(input.assemble()?, scenario).map_err(refuse)?;
+    let at_start = || scenario.solver(input.assemble()?).map_err(refuse);
+    let moving = SignalledMotion::from(at_start()?, Signals::default(), start);
+    let mut moving = moving.map_err(refuse)?;
     if forces {
         moving = moving.with_forces(reactions).map_err(refuse)?;
     }
@@ -62,16 +70,17 @@ pub(super) fn motion(input: &Input, conditions: &Conditions) -> Result<String, E
     let chart = picture(&plot.sheet(&mechanism, &moving.events));
     let mut html = format!("<h2>Motion</h2>\n<figure>\n{chart}\n</figure>\n");
     html += &list(&lines);
+    let is_warning = |message: &Message| matches!(message, Message::Warning(_));
+    told.extend(moving.notices.into_iter().filter(is_warning));
     if mechanism.has_freedoms() {
-        html += &equilibrium(input, conditions)?;
+        html += &equilibrium(input, at_start()?)?;
     }
     Ok(html)
 }
 
 /// Returns the equilibrium to which the freedoms come down from the start, and how they move near it.
-fn equilibrium(input: &Input, conditions: &Conditions) -> Result<String, Error> {
-    let solver = conditions.solver_at_start(input)?;
-    let mut at = AtRest::start(input.source.name(), solver, <_>::default())?;
+fn equilibrium(input: &Input, solver: Solver) -> Result<String, Error> {
+    let mut at = AtRest::begin(input.source.name(), solver, Signals::default())?;
     let mut lines = Vec::new();
     match at.balance().and_then(|_| oscillations(&mut at)) {
         Ok(roots) => {
