@@ -121,14 +121,26 @@ def calls(a, folder):
         ),
         "film": lambda: own.run(a.times(), a.drive(), stop="keep").to_html(a.flag()),
         "sweep": lambda: own.sweep(a.swept(), a.times(), a.drive(), a.variables(), False, a.drive()),
-        "range": lambda: own.range(driver(), a.start(), a.parameters(), a.or_odd((None, 1.0))),
+        "range": lambda: own.range(
+            driver(), a.start(), a.parameters(), a.or_odd((None, chosen(a.rng, [1.0, "1"]))), a.or_odd(None)
+        ),
         "modes": lambda: own.modes(a.start(), a.parameters()),
         "balance": lambda: own.balance(a.start(), a.parameters(), a.flag()),
         "linearize": lambda: own.linearize(a.start(), a.parameters(), a.variables(), a.flag()),
         "draw": lambda: own.draw(
             a.start(), a.parameters(), poses=a.or_odd(2), driver=chosen(a.rng, [None, driver()]),
-            width=a.or_odd(100), forces=a.flag(),
+            width=a.or_odd(100), forces=a.flag(), between=a.or_odd((0.1, None)),
+            path=a.or_odd(folder / f"x.{chosen(a.rng, ['png', 'svg', 'dxf', 'x'])}"),
         ),
+        "convert": lambda: own.convert(
+            a.or_odd(chosen(a.rng, ["pmks", "asmt"])), a.or_odd(folder / "x"), a.start(), a.parameters()
+        ),
+        "report": lambda: own.report(a.or_odd(folder / "x.html"), a.start(), a.parameters()),
+        "page": lambda: own.page(a.or_odd(folder / "x.html"), a.or_odd(None), a.or_odd(None), a.or_odd("x")),
+        "model_description": lambda: own.model_description(a.or_odd(2)),
+        "new": lambda: biela.new(a.or_odd("x"), a.or_odd("four_bar"), a.or_odd(folder)),
+        "import_mechanism": lambda: biela.import_mechanism(a.or_odd(folder / "x"), a.or_odd(None), a.or_odd("m")),
+        "platforms": lambda: biela.platforms(a.or_odd(folder)),
         "changed": lambda: own.changed(a.parameters(), a.start()),
         "posed": lambda: own.posed(a.or_odd(biela.Mode(a.poses(), 1.0))),
         "check": lambda: own.check(),
@@ -148,7 +160,8 @@ def calls(a, folder):
 
 
 @pytest.mark.parametrize("place", range(len(MECHANISMS)), ids=[path.stem for path in MECHANISMS])
-def test_random_arguments_never_panic(place, tmp_path):
+def test_random_arguments_never_panic(place, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     mechanism = biela.load(MECHANISMS[place])
     rng = np.random.default_rng(place)
     ended = 0

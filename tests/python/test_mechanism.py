@@ -124,7 +124,15 @@ def test_a_range_is_found_between_two_values(four_bar):
     assert (found.lower.kind, found.upper.kind) == ("bound", "bound")
     assert_allclose([found.lower.value, found.upper.value], [0.5, 2.0], rtol=1e-14)
     assert four_bar.range("crank_angle", between=(0.5, None)).lower.value == found.lower.value
-    for between in [(0.5,), (0.5, np.nan), ("a", "b")]:
+    again = four_bar.range("crank_angle", between=("0.5*base/(0.4*m)", "2"))
+    assert_allclose([again.lower.value, again.upper.value], [0.5, 2.0], rtol=1e-14)
+    with pytest.raises(biela.UsageError, match="between: no parameter `a`"):
+        four_bar.range("crank_angle", between=("a", None))
+    with pytest.raises(biela.UsageError, match=r"between\[0\], 2, must be less than between\[1\], 0.5"):
+        four_bar.range("crank_angle", between=(2, 0.5))
+    with pytest.raises(biela.UsageError, match="speed is of forces"):
+        four_bar.range("crank_angle", speed=1.0)
+    for between in [(0.5,), (0.5, np.nan), 1.0]:
         with pytest.raises(biela.UsageError, match="between: expected"):
             four_bar.range("crank_angle", between=between)
 

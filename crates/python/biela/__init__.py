@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from ._biela import __version__
 
 if TYPE_CHECKING:
+    from .files import Platform, import_mechanism, new, platforms, schema
     from .errors import (
         AssemblyError,
         Diagnostic,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
         Equilibrium,
         Extreme,
         Gradient,
+        JointForce,
         Mode,
         Modes,
         Range,
@@ -67,6 +69,7 @@ __all__ = [
     "Freedom",
     "Gradient",
     "Input",
+    "JointForce",
     "Measure",
     "Mechanism",
     "MechanismError",
@@ -76,6 +79,7 @@ __all__ = [
     "Mode",
     "Modes",
     "Parameter",
+    "Platform",
     "Range",
     "Report",
     "Result",
@@ -89,14 +93,18 @@ __all__ = [
     "__version__",
     "check",
     "fit",
+    "import_mechanism",
     "library",
     "load",
     "loads",
+    "new",
+    "platforms",
     "points",
+    "schema",
     "tolerance",
 ]
 
-_MODULES = "errors", "parts", "results", "mechanism", "synthesis", "tolerances"
+_MODULES = "errors", "parts", "results", "mechanism", "files", "synthesis", "tolerances"
 """Modules that define these names. They are imported when a name is needed: the program needs none,
 and no NumPy, which all but the first import."""
 

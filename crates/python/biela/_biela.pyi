@@ -1,6 +1,5 @@
 """Compiled part of the package. Arrays are flat; the package gives them shapes and names."""
 
-import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,10 +17,16 @@ _Floats = NDArray[np.float64]
 _Places = NDArray[np.uintp]
 _Named = tuple[str, str, str, str]
 _Held = tuple[str, float, str]
+_Extreme = tuple[float, float]
+_Told = tuple[str, list[str]]
 _Events = tuple[_Places, _Floats, _Places, _Places, _Floats]
 
 def program(arguments: Sequence[str]) -> int: ...
 def shipped() -> list[str]: ...
+def new(name: str, template: str, folder: str) -> str: ...
+def import_mechanism(file: str, length: str | None) -> tuple[str, str, list[str]]: ...
+def platforms(runtime: str | None) -> list[tuple[str, str, str | None, str | None]]: ...
+def schema() -> str: ...
 def shipped_text(name: str) -> str: ...
 def unknown_name(kind: str, name: str, known: Sequence[str]) -> str: ...
 
@@ -83,12 +88,14 @@ class Mechanism:
         parameters: _Values,
         columns: Sequence[int],
         by: Sequence[str],
+        film: bool,
     ) -> Run: ...
     def sweep(
         self,
         motions: _Motions,
         parameters: _Values,
         swept: Sequence[tuple[str, Any]],
+        courses: Sequence[tuple[str, Sequence[Any]]],
         variants: int,
         columns: Sequence[int],
     ) -> Sweep: ...
@@ -107,15 +114,19 @@ class Mechanism:
         driver: str,
         motions: _Motions,
         parameters: _Values,
-        bounds: Sequence[float | None],
+        bounds: Sequence[float | str | None],
+        speed: float | None,
     ) -> tuple[
         _EndRow,
         _EndRow,
-        list[tuple[float, list[str]]],
+        list[tuple[float, list[str], str]],
         _Floats,
         _Floats,
         _Floats,
         _Floats,
+        _Floats,
+        list[tuple[str, list[_Extreme] | None]],
+        tuple[_Extreme | None, tuple[_Extreme, str | None] | None, str | None],
     ]: ...
     def modes(
         self, motions: _Motions, parameters: _Values
@@ -140,17 +151,25 @@ class Mechanism:
         width: int | None,
         transparent: bool,
         contents: tuple[bool, int, str | None, bool, bool, bool],
-    ) -> str: ...
+        bounds: Sequence[float | str | None],
+        path: str | None,
+    ) -> tuple[str, Sequence[int] | None, list[str]]: ...
+    def convert(self, to: str, motions: _Motions, parameters: _Values) -> _Told: ...
+    def page_of_report(self, motions: _Motions, parameters: _Values) -> _Told: ...
+    def page(
+        self, path: str, share: str | None, solver: str | None, studio: str | None
+    ) -> list[tuple[str, str]]: ...
     def edited(
         self, motions: _Motions, parameters: _Values, estimates: Sequence[float] | None
     ) -> str: ...
     def fmu(
         self,
         fmi: str,
-        terminals: bool,
-        runtime: str | os.PathLike[str] | None,
+        options: Sequence[bool],
+        runtime: str | None,
         platforms: Sequence[str],
-    ) -> bytes: ...
+    ) -> Sequence[int]: ...
+    def model_description(self, fmi: str) -> Sequence[int]: ...
 
 class Run:
     rows: int

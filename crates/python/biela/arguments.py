@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from typing import Any, Union
 
@@ -21,6 +22,9 @@ Parameters = Mapping[str, Union[float, str]]
 """Values by the parameters' names: numbers in SI units, or expressions such as `"120*mm"`; likewise
 the starts of freedoms, `swing.position` and `swing.velocity`."""
 
+Bounds = Sequence[Union[float, str, None]]
+"""Two values of a driver, numbers [m or rad] or expressions such as `"30*deg"`; `None` for none."""
+
 TURN = 2 * np.pi
 MOST = 2**31 - 1
 """Largest count that the compiled module takes on all systems."""
@@ -36,6 +40,21 @@ def mapping(argument: str, value: Any) -> dict[str, Any]:
     if wrong:
         raise UsageError(f"{argument}: expected names as text; found {wrong[0]!r}")
     return dict(value)
+
+
+def text_argument(argument: str, value: Any) -> str:
+    """Returns an argument that is text."""
+    if not isinstance(value, str):
+        raise UsageError(f"{argument}: expected text; found {value!r}")
+    return value
+
+
+def path_argument(argument: str, value: Any) -> str:
+    """Returns an argument that is a path."""
+    try:
+        return text_argument(argument, os.fspath(value))
+    except TypeError:
+        raise UsageError(f"{argument}: expected a path; found {value!r}") from None
 
 
 def names_of(argument: str, value: Any) -> list[str]:
@@ -98,6 +117,30 @@ def numbers(argument: str, value: Any, name: str | None = None) -> NDArray:
     except (TypeError, ValueError, OverflowError):
         part = f" as `{name}`" if name else ""
         raise UsageError(f"{argument}: expected numbers{part}; found {value!r}") from None
+
+
+def number(argument: str, value: Any) -> float:
+    """Returns an argument that is one number."""
+    found = numbers(argument, value)
+    if found.ndim:
+        raise UsageError(f"{argument}: expected one number; found {value!r}")
+    return float(found)
+
+
+def bounds_of(between: Any) -> list[float | str | None]:
+    """Returns the two values of a driver between which it is followed."""
+    try:
+        bounds = list(between)
+        if len(bounds) != 2:
+            raise TypeError
+        bounds = [b if b is None or isinstance(b, str) else number("between", b) for b in bounds]
+        if any(isinstance(bound, float) and not np.isfinite(bound) for bound in bounds):
+            raise TypeError
+    except TypeError:
+        raise UsageError(
+            f"between: expected two finite numbers or expressions, or `None` for none; found {between!r}"
+        ) from None
+    return bounds
 
 
 def count_of(name: str, value: int, least: int = 0) -> int:
@@ -168,15 +211,67 @@ def motions_of(
     return times, motions
 
 
-def start_of(drive: Drive | None) -> dict[str, Any]:
-    """Returns motions that have single values: those at the start."""
+def courses_of(
+    drive: Mapping[str, Any],
+) -> tuple[dict[str, Any], dict[str, list[NDArray]], tuple[int, ...]]:
+    """Takes the arrays that differ between variants, whose last axis is over time, out of motions.
+
+    Returns the motions of a first variant, the arrays of the others by name, and the shape of the
+    variants; arrays of any shapes that fit together.
+    """
+    swept = {}
+    for name, value in drive.items():
+        parts = value if isinstance(value, tuple) else (value,)
+        if isinstance(value, str) or not any(np.ndim(part) > 1 for part in parts):
+            continue
+        swept[name] = [numbers("drive", part, name) for part in parts]
+    if not swept:
+        return dict(drive), {}, ()
+    try:
+        shape = np.broadcast_shapes(*(part.shape[:-1] for parts in swept.values() for part in parts))
+        rows = {part.shape[-1] for parts in swept.values() for part in parts if part.ndim} - {1}
+        count = max(rows, default=1)
+        full = {
+            name: [np.broadcast_to(part, (*shape, count)) for part in parts]
+            for name, parts in swept.items()
+        }
+    except ValueError:
+        shapes = ", ".join(f"{name} {part.shape}" for name, parts in swept.items() for part in parts)
+        raise UsageError(f"drive: the shapes do not fit together: {shapes}") from None
+    zeros = (0,) * len(shape)
+    # Without a variant there are times all the same. Single values stand for constant arrays.
+    row = lambda part: part[zeros] if part.size else np.zeros(count)
+    first = lambda part: row(part) if count > 1 else row(part)[0]
+    return {**drive, **{name: tuple(map(first, parts)) for name, parts in full.items()}}, full, shape
+
+
+def orders_of_courses(
+    name: str, times: NDArray, timeless: bool, parts: list[NDArray], wrapped: float | None
+) -> list[NDArray]:
+    """Returns positions, velocities and accelerations of a driver in all variants, as `motions_of` does
+    for one."""
+    rows = parts[0].shape[-1]
+    if rows not in (1, len(times)):
+        raise UsageError(f"drive: `{name}` has {rows} values for {len(times)} times")
+    if rows != len(times):
+        parts = [np.broadcast_to(part, (*part.shape[:-1], len(times))) for part in parts]
+        return [*parts, *[np.zeros(parts[0].shape)] * (3 - len(parts))]
+    if wrapped is not None:
+        start = np.full((*parts[0].shape[:-1], 1), wrapped)
+        parts = [np.unwrap(np.concatenate([start, parts[0]], axis=-1), period=TURN)[..., 1:], *parts[1:]]
+    return [*parts, *_missing_rates(times, parts, constant=False, timeless=timeless)]
+
+
+def start_of(drive: Drive | None, inputs: Iterable[str] = ()) -> dict[str, Any]:
+    """Returns motions that have single values: those at the start. Sizes of the `inputs` of forces
+    become expressions, which all questions know."""
     constant = {}
     for name, value in mapping("drive", drive).items():
         if not isinstance(value, str):
             number = numbers("drive", value, name)
             if number.ndim:
                 raise UsageError(f"drive: expected one number as `{name}`; found {value!r}")
-            value = (number, 0.0, 0.0)
+            value = repr(float(number)) if name in inputs else (number, 0.0, 0.0)
         constant[name] = value
     return constant
 
@@ -188,10 +283,11 @@ def _missing_rates(
     missing = 3 - len(given)
     # Without time nothing moves: velocities are zero unless given. Samples that do not fit the times are
     # refused later, and those that have no rates.
-    if not missing or constant or timeless or len(given[-1]) != len(times):
-        return [np.zeros(len(times))] * missing
+    zeros = np.zeros((*given[-1].shape[:-1], len(times)))
+    if not missing or constant or timeless or given[-1].shape[-1] != len(times):
+        return [zeros] * missing
     if not (np.isfinite(times).all() and np.isfinite(given).all()) or np.any(np.diff(times) < 0):
-        return [np.zeros(len(times))] * missing
+        return [zeros] * missing
     if np.any(np.diff(times) == 0):
         raise UsageError("drive: samples at equal times cannot be differentiated; give the rates")
     velocity, acceleration = differentiate(times, given[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 import warnings
@@ -15,17 +16,24 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _biela
 from .arguments import (
+    Bounds,
     Drive,
     Parameters,
+    bounds_of,
     count_of,
+    courses_of,
     given_values,
     is_timeless,
     joined,
     mapping,
     motions_of,
     names_of,
+    number,
     numbers,
+    orders_of_courses,
+    path_argument,
     start_of,
+    text_argument,
 )
 from .errors import (
     AssemblyError,
@@ -54,6 +62,7 @@ from .results import (
     End,
     Equilibrium,
     Extreme,
+    JointForce,
     Mode,
     Modes,
     Range,
@@ -63,6 +72,7 @@ from .results import (
     Sweep,
     places,
 )
+from .texts import Source, table, text_of, written
 
 CHUNKS = 100
 """Number of parts of a long sweep, after each of which the progress is shown."""
@@ -85,15 +95,24 @@ def load(path: str | os.PathLike) -> Mechanism:
     Raises `MechanismError` with all errors of the file; its warnings are warnings of Python. A file
     that does not exist raises `MissingFileError`, a `FileNotFoundError`.
     """
-    name = os.fspath(path)
+    name = path_argument("path", path)
     with _reading(name):
         inner = _biela.Mechanism(name, None, name)
     return Mechanism(inner, name)
 
 
-def loads(text: str, name: str = "mechanism.toml") -> Mechanism:
-    """Reads the text of a mechanism file, called `name` in messages."""
-    return Mechanism(_biela.Mechanism(name, text, None))
+def loads(source: Source, name: str = "mechanism.toml") -> Mechanism:
+    """Reads the text of a mechanism file, called `name` in messages, or the mapping that such a text
+    stands for.
+
+    >>> data = {"format": 1, "name": "lever", "ground": {"markers": {"O": [0, 0]}},
+    ...     "bodies": {"arm": {"markers": {"A": [0, 0], "P": [0.3, 0]}}},
+    ...     "joints": {"O": {"type": "revolute", "markers": ["ground.O", "arm.A"]}},
+    ...     "drivers": {"angle": {"coordinate": "angle", "markers": ["ground.O", "arm.A"], "start": 0.5}}}
+    >>> print(loads(data).run(variables=["arm.phi"], drive={"angle": [0.5]})["arm.phi"])
+    [0.5]
+    """
+    return Mechanism(_biela.Mechanism(text_argument("name", name), text_of(source), None))
 
 
 @overload
@@ -111,14 +130,14 @@ def library(name=None):
     return _reread(_biela.shipped_text(name), None, True, name)
 
 
-def check(source: str | os.PathLike, modes: bool = False) -> Report:
-    """Checks a mechanism file, or a text of several lines, and reports all problems.
+def check(source: str | os.PathLike | Mapping, modes: bool = False) -> Report:
+    """Checks a mechanism file, a text of several lines, or a mapping, and reports all problems.
 
     >>> report = check('format = 1\\nname = "a"')
     >>> report.ok, [problem.code for problem in report.diagnostics]
     (False, ['no-bodies'])
     """
-    name = os.fspath(source)
+    name = text_of(source) if isinstance(source, Mapping) else path_argument("source", source)
     if "\n" in name:
         found = _biela.Mechanism.check("mechanism.toml", name, None, modes)
     else:
@@ -204,7 +223,7 @@ class Mechanism:
         known = [name for name in variables if name in self.variables]
         names, _, indices = self._chosen(known)
         try:
-            raw = self._inner.run(self._start(None), [], indices, [])
+            raw = self._inner.run(self._start(None), [], indices, [], False)
         except AssemblyError:
             return {}
         return dict(zip(names, raw.take_values().tolist()))
@@ -229,6 +248,11 @@ class Mechanism:
 
     def _repr_svg_(self) -> str:
         return str(self.draw())
+
+    def _repr_html_(self) -> str:
+        values = [(p.name, f"{p.value:g}", p.unit, p.description) for p in self.parameters.values()]
+        title = f"<b>{html.escape(self.name)}</b> {html.escape(self.description)}"
+        return f"{title}<br>{self.draw()}{table(('parameter', 'value', 'unit', ''), values)}"
 
     def __reduce__(self):
         return _reread, (self.text, *self._origin())
@@ -285,10 +309,10 @@ class Mechanism:
             gradient = [name for name, parameter in self.parameters.items() if not parameter.derived]
         by = names_of("gradient", gradient)
         arguments = motions, given_values(parameters), indices, by
-        raw = self._inner.run(*arguments)
+        raw = self._inner.run(*arguments, False)
         rows = raw.rows
         result = Result(
-            raw,
+            raw.stop,
             (self, *arguments),
             np.asarray(motions[0])[:rows],
             not is_timeless(t, drive),
@@ -307,7 +331,7 @@ class Mechanism:
 
     def sweep(
         self,
-        parameters: Mapping[str, ArrayLike],
+        parameters: Mapping[str, ArrayLike] | None = None,
         t: ArrayLike | None = None,
         drive: Drive | None = None,
         variables: Sequence[str] | None = None,
@@ -318,7 +342,10 @@ class Mechanism:
         """Runs a variant of the mechanism per entry of the arrays of `parameters`, on all cores.
 
         Arrays of any one shape, which single values fit; with `outer` each value of one with each of
-        all others, an axis per array in the order of `parameters`, none for a single value. Each variant starts from the file's own
+        all others, an axis per array in the order of `parameters`, none for a single value. An array in
+        `drive` or `inputs` with several axes has a motion per variant: its last axis is over time, or
+        of length 1 for constant values, its others are those of the variants, and with `outer` follow
+        those of `parameters`. Each variant starts from the file's own
         pose and is followed on its continuous motion, as in `run`. A variant that does not
         assemble, or stops, is no error: `reason` tells why, and its values are not numbers from
         there on. `parameters` may have starts of freedoms too, such as `swing.velocity`. `progress` shows
@@ -335,8 +362,13 @@ class Mechanism:
         >>> sweep.ok
         array([ True,  True, False])
         """
-        drive = joined(drive, inputs)
+        drive, courses, moved = courses_of(joined(drive, inputs))
         motions = self._motions(t, drive)
+        timeless = is_timeless(t, drive)
+        courses = {
+            name: orders_of_courses(name, motions[0], timeless, parts, self._wrapped.get(name))
+            for name, parts in courses.items()
+        }
         names, units, indices = self._chosen(variables)
         if not names:
             raise UsageError("variables: no variable is named")
@@ -344,16 +376,22 @@ class Mechanism:
         fixed = {n: v for n, v in parameters.items() if isinstance(v, str)}
         arrays = {n: numbers("parameters", v, n) for n, v in parameters.items() if n not in fixed}
         if outer:
-            arrays = dict(zip(arrays, _outer(arrays.values())))
+            arrays = dict(zip(arrays, _outer(arrays.values(), len(moved))))
         try:
-            series = dict(zip(arrays, np.broadcast_arrays(*arrays.values())))
+            shape = np.broadcast_shapes(moved, *(array.shape for array in arrays.values()))
         except ValueError:
             shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+            shapes += f", drive {moved}" if moved else ""
             raise UsageError(f"parameters: the shapes do not fit together: {shapes}") from None
-        shape = next(iter(series.values())).shape if series else ()
+        series = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         count = int(np.prod(shape, dtype=int))
         flat = {name: values.reshape(-1) for name, values in series.items()}
-        values = np.empty((count, len(names), len(motions[0])))
+        full = (*shape, len(motions[0]))
+        courses = {
+            name: [np.broadcast_to(order, full).reshape(count, -1) for order in orders]
+            for name, orders in courses.items()
+        }
+        parts = []
         rows = np.empty(count, dtype=int)
         reasons: dict[int, str] = {}
         events = SweepEvents(self._inner.force_names)
@@ -366,10 +404,11 @@ class Mechanism:
                 motions,
                 list(fixed.items()),
                 [(name, array[part]) for name, array in flat.items()],
+                [(name, [order[part].reshape(-1) for order in orders]) for name, orders in courses.items()],
                 part.stop - first,
                 indices,
             )
-            values[part] = raw.take_values().reshape(part.stop - first, *values.shape[1:])
+            parts.append(raw.take_values().reshape(part.stop - first, len(names), len(motions[0])))
             rows[part] = raw.rows
             reasons.update((first + index, reason) for index, reason in raw.reasons)
             events.add(first, raw.events())
@@ -380,15 +419,16 @@ class Mechanism:
         known = {**self.variables, **{name: p.unit for name, p in self.parameters.items()}}
         return Sweep(
             np.asarray(motions[0]),
-            not is_timeless(t, drive),
+            not timeless,
             dict(zip(names, units)),
             series,
             {name: known[name] for name in series},
             shape,
-            values,
+            parts[0] if len(parts) == 1 else np.concatenate(parts),
             rows,
             reasons,
             events,
+            bool(courses),
         )
 
     def range(
@@ -396,19 +436,29 @@ class Mechanism:
         driver: str,
         drive: Drive | None = None,
         parameters: Parameters | None = None,
-        between: tuple[float | None, float | None] = (None, None),
+        between: Bounds = (None, None),
+        speed: float | None = None,
     ) -> Range:
-        """Finds how far a driver can go both ways, with the others held; `between` two values of it [m
-        or rad], in place of its own `min` and `max`.
+        """Finds how far a driver can go both ways, with the others held; `between` two values of it,
+        numbers [m or rad] or expressions such as `"30*deg"`, in place of its own `min` and `max`.
+
+        At `speed` [m/s or rad/s], by default at rest, there are the largest effort and the largest force
+        in a joint, of a mechanism with masses or forces. Measures computed from velocities have the
+        speed 1 without one.
 
         >>> str(four_bar.range("crank_angle").upper)
         'no limit'
+        >>> boom = library("excavator_arm").range("boom_cylinder")
+        >>> print(f"{boom.effort.value / 1e3:.0f} kN in the cylinder, most in {boom.reaction.joint}")
+        418 kN in the cylinder, most in boom_foot
         """
-        bounds = [None if end is None else float(numbers("between", end)) for end in between]
-        if len(bounds) != 2 or any(end is not None and not np.isfinite(end) for end in bounds):
-            raise UsageError(f"between: expected two finite numbers, or `None` for none; found {between!r}")
-        found = self._inner.range(driver, self._start(drive), given_values(parameters), bounds)
-        lower, upper, crossings, values, transmission, rcond, poses, measures, extremes = found
+        speed = None if speed is None else number("speed", speed)
+        found = self._inner.range(
+            text_argument("driver", driver), self._start(drive), given_values(parameters),
+            bounds_of(between), speed,
+        )
+        lower, upper, crossings, values, transmission, rcond, poses, measures, extremes, forces = found
+        effort, reaction, without = forces
         return Range(
             driver,
             End(*lower),
@@ -422,7 +472,12 @@ class Mechanism:
             {
                 name: tuple(Extreme(value, at) for value, at in both)
                 for name, both in extremes
+                if both is not None
             },
+            speed,
+            None if effort is None else Extreme(*effort),
+            None if reaction is None else JointForce(*reaction[0], reaction[1]),
+            without,
         )
 
     def modes(self, drive: Drive | None = None, parameters: Parameters | None = None) -> Modes:
@@ -517,19 +572,98 @@ class Mechanism:
         dimensions: bool = False,
         instant_centres: bool = False,
         forces: bool = False,
+        between: Bounds = (None, None),
+        path: str | os.PathLike | None = None,
     ) -> Drawing:
-        """Draws the mechanism at the start values, as SVG that notebooks show.
+        """Draws the mechanism at the start values, as SVG that notebooks show; `path` is a file for the
+        drawing, whose extension decides: `.svg`, `.png`, or `.dxf` for the workshop.
 
         `poses` further poses stand as faint outlines along the motion that the traces cover, or
-        along the range of `driver`. `dimensions` adds letters of joints and lengths of bodies,
-        `instant_centres` the instant centre of each body and ground, `forces` arrows for what joints
-        and drivers exert, and for springs, dampers and loads.
+        along the range of `driver`, `between` two values of it. `dimensions` adds letters of joints and
+        lengths of bodies, `instant_centres` the instant centre of each body and ground, `forces` arrows
+        for what joints and drivers exert, and for springs, dampers and loads.
         """
-        parameters = given_values(parameters)
-        start = self._start(drive)
         width = None if width is None else count_of("width", width, 1)
-        options = (traces, count_of("poses", poses), driver, dimensions, instant_centres, forces)
-        return Drawing(self._inner.draw(start, parameters, width, transparent, options))
+        poses = count_of("poses", poses)
+        driver = None if driver is None else text_argument("driver", driver)
+        file = None if path is None else path_argument("path", path)
+        if file is not None and file.lower().endswith(".dxf"):
+            pictures = dict(poses=poses, dimensions=dimensions, instant_centres=instant_centres)
+            pictures.update(width=width, forces=forces, transparent=transparent)
+            for option, given in pictures.items():
+                if given:
+                    raise UsageError(f"{option} is of pictures: leave it out for a drawing in DXF")
+        options = (bool(traces), poses, driver, bool(dimensions), bool(instant_centres), bool(forces))
+        drawing, content, notes = self._inner.draw(
+            self._start(drive), given_values(parameters), width, bool(transparent), options,
+            bounds_of(between), file,
+        )
+        if file is not None:
+            written(file, bytes(content))
+        for note in notes:
+            warnings.warn(note, MechanismWarning, stacklevel=2)
+        return Drawing(drawing)
+
+    def convert(
+        self,
+        to: str,
+        path: str | os.PathLike | None = None,
+        drive: Drive | None = None,
+        parameters: Parameters | None = None,
+    ) -> str:
+        """Returns the mechanism for another program, and writes the file `path` if there is one.
+
+        `to` is `pmks` for a link that opens in PMKS+, `pylinkage` for JSON, `linkage` for a document of
+        Linkage, `asmt` for an assembly of OndselSolver and FreeCAD. A warning tells what does not come
+        over.
+
+        >>> four_bar.convert("pmks").startswith("https://app.pmksplus.com/?")
+        True
+        """
+        start = self._start(drive)
+        text, notes = self._inner.convert(text_argument("to", to), start, given_values(parameters))
+        if path is not None:
+            written(path, text)
+        for note in notes:
+            warnings.warn(note, MechanismWarning, stacklevel=2)
+        return text
+
+    def report(
+        self,
+        path: str | os.PathLike | None = None,
+        drive: Drive | None = None,
+        parameters: Parameters | None = None,
+    ) -> Path:
+        """Writes a report, one page that prints to PDF, and returns its path, by default the mechanism's
+        name with `_report.html`."""
+        path = Path(f"{self.name}_report.html") if path is None else path
+        page, notes = self._inner.page_of_report(self._start(drive), given_values(parameters))
+        for note in notes:
+            warnings.warn(note, MechanismWarning, stacklevel=2)
+        return written(path, page)
+
+    def page(
+        self,
+        path: str | os.PathLike | None = None,
+        solver: str | os.PathLike | None = None,
+        share: str | None = None,
+        studio: str | None = None,
+    ) -> Path:
+        """Writes a page on which the mechanism is moved by hand, and returns its path, by default the
+        mechanism's name with `.html`.
+
+        `solver` is a solver for pages that replaces that of this package, `share` the name of a script
+        beside the page that takes it, `studio` the address of a studio, to which *Edit* leads.
+        """
+        file = path_argument("path", f"{self.name}.html" if path is None else path)
+        files = self._inner.page(
+            file,
+            None if share is None else text_argument("share", share),
+            None if solver is None else path_argument("solver", solver),
+            None if studio is None else text_argument("studio", studio),
+        )
+        paths = [written(name, content) for name, content in files]
+        return paths[0]
 
     def changed(self, parameters: Parameters | None = None, drive: Drive | None = None) -> Mechanism:
         """Returns the mechanism with other parameters and start values of drivers.
@@ -559,9 +693,7 @@ class Mechanism:
 
     def write(self, path: str | os.PathLike) -> Path:
         """Writes the mechanism file and returns its path."""
-        path = Path(path)
-        path.write_text(self.text, encoding="utf-8")
-        return path
+        return written(path, self.text)
 
     def export(
         self,
@@ -570,22 +702,32 @@ class Mechanism:
         runtime: str | os.PathLike | None = None,
         fmi: int = 2,
         terminals: bool = False,
+        page: bool = True,
+        ssp: bool = False,
     ) -> Path:
         """Writes the FMU and returns its path, by default the mechanism's name with `.fmu`.
 
         `fmi` is the version of the standard: 2 or 3; `terminals` adds terminals and an icon to an FMU
-        of FMI 2.0.
+        of FMI 2.0. `page` adds the page on which the mechanism is moved by hand. With `ssp` the file
+        is a system of SSP 1.0, `.ssp`, which holds the FMU and the values of its parameters.
 
         `platforms` narrows the FMU to some of those of `biela platforms`; `runtime` is a folder of
         runtime libraries that replace those of this package.
         """
-        if str(fmi) not in ("2", "3"):
-            raise UsageError(f"fmi is {fmi!r}; expected 2 or 3")
-        path = Path(path) if path is not None else Path(f"{self.name}.fmu")
-        folder = os.fspath(runtime) if runtime is not None else None
+        extension = "ssp" if ssp else "fmu"
+        path = Path(f"{self.name}.{extension}") if path is None else path
+        folder = None if runtime is None else path_argument("runtime", runtime)
+        options = [bool(terminals), not page, bool(ssp)]
         names = names_of("platforms", platforms)
-        path.write_bytes(bytes(self._inner.fmu(str(fmi), terminals, folder, names)))
-        return path
+        return written(path, bytes(self._inner.fmu(_version(fmi), options, folder, names)))
+
+    def model_description(self, fmi: int = 2) -> str:
+        """Returns the modelDescription.xml of the FMU of a version of FMI: 2 or 3.
+
+        >>> four_bar.model_description()[:38]
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        """
+        return bytes(self._inner.model_description(_version(fmi))).decode("utf-8")
 
     def _chosen(self, wanted: Sequence[str] | None) -> tuple[list[str], list[str], list[int]]:
         """Returns names, units and indices of variables, or of all variables of owners."""
@@ -598,12 +740,16 @@ class Mechanism:
 
     def _start(self, drive: Drive | None) -> tuple[NDArray, list]:
         """Returns the motions at the file's start time, where drivers have single values."""
-        return self._motions(self._inner.simulation[:1], start_of(drive))
+        return self._motions(self._inner.simulation[:1], start_of(drive, self.inputs))
 
     def _motions(self, t: ArrayLike | None, drive: Drive | None) -> tuple[NDArray, list]:
         """Returns times and motions of drivers as the compiled module takes them."""
-        wrapped = {d.name: d.start for d in self.drivers.values() if d.wrapped and d.start is not None}
-        return motions_of(t, mapping("drive", drive), self._inner.simulation, wrapped)
+        return motions_of(t, mapping("drive", drive), self._inner.simulation, self._wrapped)
+
+    @property
+    def _wrapped(self) -> dict[str, float]:
+        """Start values of the drivers whose values mean angles modulo one turn."""
+        return {d.name: d.start for d in self.drivers.values() if d.wrapped and d.start is not None}
 
     def _moving(self, motions: list) -> tuple[str, str, NDArray] | None:
         """Returns name, unit and values of the driver whose values change, if it is one."""
@@ -628,10 +774,17 @@ def _pose_of(mode: Mode, body: str) -> NDArray:
     return pose
 
 
-def _outer(arrays: Iterable[NDArray]) -> list[NDArray]:
-    """Gives each array axes of its own, in order."""
+def _version(fmi: int) -> str:
+    """Returns a version of FMI."""
+    if str(fmi) not in ("2", "3"):
+        raise UsageError(f"fmi is {fmi!r}; expected 2 or 3")
+    return str(fmi)
+
+
+def _outer(arrays: Iterable[NDArray], after: int) -> list[NDArray]:
+    """Gives each array axes of its own, in order, with others after them."""
     arrays = list(arrays)
-    after = sum(array.ndim for array in arrays)
+    after += sum(array.ndim for array in arrays)
     spread = []
     for array in arrays:
         after -= array.ndim

@@ -10,7 +10,8 @@ STENCIL = 5
 
 
 def differentiate(t: ArrayLike, values: ArrayLike) -> tuple[NDArray, NDArray]:
-    """Returns first and second derivatives of samples at ascending times, not necessarily even.
+    """Returns first and second derivatives of samples at ascending times, not necessarily even, along
+    the last axis.
 
     Each derivative is that of the polynomial through the nearest five samples.
 
@@ -30,7 +31,7 @@ def differentiate(t: ArrayLike, values: ArrayLike) -> tuple[NDArray, NDArray]:
     offset = t[index] - t[:, None]
     width = np.abs(offset).max(axis=1)
     powers = (offset / width[:, None])[:, :, None] ** np.arange(count)
-    coefficients = np.linalg.solve(powers, values[index][:, :, None])[:, :, 0]
-    velocity = coefficients[:, 1] / width
-    acceleration = 2 * coefficients[:, 2] / width**2 if count > 2 else np.zeros_like(values)
+    coefficients = np.linalg.solve(powers, values[..., index][..., None])[..., 0]
+    velocity = coefficients[..., 1] / width
+    acceleration = 2 * coefficients[..., 2] / width**2 if count > 2 else np.zeros_like(values)
     return velocity, acceleration

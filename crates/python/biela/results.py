@@ -14,6 +14,7 @@ from . import _biela, charts, tables
 from .errors import Diagnostic, UnknownNameError, UsageError
 from .optional import needed
 from .parts import Event
+from .texts import table
 
 if TYPE_CHECKING:
     import pandas
@@ -42,14 +43,15 @@ class Drawing(str):
         return str(self)
 
 
-class Result(Mapping):
+class Result(dict):
     """Motion of a mechanism: a mapping from the FMU's names of variables to arrays over time.
 
-    Values are in SI units; `units` tells which.
+    Values are in SI units; `units` tells which. As a `dict` it is what `pandas.DataFrame` takes; its
+    arrays are columns of one array.
     """
 
-    def __init__(self, raw, run, t, timed, units, values, by, gradient, moving, events):
-        self._raw = raw
+    def __init__(self, stopped, run, t, timed, units, values, by, gradient, moving, events):
+        super().__init__(zip(units, values.T))
         self._run = run
         self.t: NDArray = t
         """Times [s]; those of the start for poses without times."""
@@ -58,30 +60,25 @@ class Result(Mapping):
         self.units: dict[str, str] = units
         """Units by the variables' names."""
         self._values = values
-        self._places = {name: place for place, name in enumerate(units)}
         self._moving = moving
         self.gradient = Gradient(list(units), by, gradient)
         """Derivatives of the variables by parameters: `gradient[variable, parameter]`."""
-        self.stopped: str | None = raw.stop
+        self.stopped: str | None = stopped
         """Reason why the motion ends early; `None` for a whole motion."""
         self.events: tuple[Event, ...] = events
         """Events of the free motion, such as impacts, in the order of time."""
 
-    def __getitem__(self, name: str) -> NDArray:
+    def __missing__(self, name: str) -> NDArray:
         if name == "time":
             return self.t
-        if name not in self._places:
-            raise _unknown(name, list(self._places))
-        return self._values[:, self._places[name]]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.units)
-
-    def __len__(self) -> int:
-        return len(self.units)
+        raise _unknown(name, list(self))
 
     def __contains__(self, name: object) -> bool:
-        return name == "time" or name in self._places
+        return name == "time" or super().__contains__(name)
+
+    def __reduce__(self):
+        # The arrays travel once, as the one whose columns they are.
+        return _remade, (self.__dict__,)
 
     def to_numpy(self) -> NDArray:
         """Returns all values: rows by columns, in the order of the names."""
@@ -134,23 +131,15 @@ class Result(Mapping):
 
         `forces` adds arrows for what joints and drivers exert, and for springs, dampers and loads.
         """
-        raw = self._film()
+        # The same run once more keeps the poses, which would be a second copy of the result.
+        mechanism, *arguments = self._run
+        raw = mechanism._inner.run(*arguments, True)
         if forces and not raw.has_forces:
             raise UsageError(
                 "forces: this run has none; they are among the variables of mechanisms with masses "
                 "or `[forces]`"
             )
         return raw.page(forces)
-
-    def _film(self) -> _biela.Run:
-        """Returns the run with its poses; in another process the same run is made once more."""
-        if self._raw is None:
-            mechanism, *arguments = self._run
-            self._raw = mechanism._inner.run(*arguments)
-        return self._raw
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_raw": None}
 
     def _repr_html_(self) -> str:
         page = html.escape(self.to_html(), quote=True)
@@ -162,6 +151,14 @@ class Result(Mapping):
     def __repr__(self) -> str:
         stopped = f", stopped: {self.stopped}" if self.stopped else ""
         return f"<biela.Result: {len(self.t)} rows of {len(self.units)} variables{stopped}>"
+
+
+def _remade(attributes: dict[str, Any]) -> Result:
+    """Returns a result in another process."""
+    result = Result.__new__(Result)
+    result.__dict__ = attributes
+    dict.update(result, zip(result.units, result._values.T))
+    return result
 
 
 class Gradient(Mapping):
@@ -212,7 +209,7 @@ class Sweep(Mapping):
     """
 
     def __init__(
-        self, t, timed, units, parameters, parameter_units, shape, values, rows, reasons, events
+        self, t, timed, units, parameters, parameter_units, shape, values, rows, reasons, events, moved
     ):
         self.t: NDArray = t
         """Times [s]; those of the start for poses without times."""
@@ -231,6 +228,7 @@ class Sweep(Mapping):
         """Number of rows that each variant reached."""
         self._reasons = reasons
         self._events = events
+        self._moved = moved
 
     @property
     def ok(self) -> NDArray:
@@ -256,6 +254,12 @@ class Sweep(Mapping):
         """Returns what is swept by its name in tables, where starts stand beside their variables."""
         return {f"start.{name}" if name in self.units else name: value for name, value in swept.items()}
 
+    def _levels(self) -> dict[str, NDArray]:
+        """Returns what tells variants apart: parameters, and numbers where motions differ too."""
+        if not self._moved:
+            return self.parameters
+        return {**self.parameters, "variant": np.arange(self.ok.size).reshape(self.shape)}
+
     def _place(self, flat: int) -> tuple[int, ...]:
         """Returns the indices of a variant."""
         return tuple(int(i) for i in np.unravel_index(flat, self.shape)) if self.shape else ()
@@ -278,7 +282,7 @@ class Sweep(Mapping):
         """
         rows = tables.rows_index(self.t, self.timed)
         values = np.moveaxis(self._values, 1, 2).reshape(-1, len(self.units))
-        index = tables.variants_index(self._named(self.parameters), rows)
+        index = tables.variants_index(self._named(self._levels()), rows)
         return tables.frame(values, index, self.units)
 
     def to_xarray(self) -> xarray.Dataset:
@@ -314,6 +318,18 @@ class End:
 
     def __str__(self) -> str:
         return self.text
+
+
+@dataclass(frozen=True)
+class JointForce:
+    """Largest force in a joint in a range."""
+
+    value: float
+    """Force [N], infinite where it grows without bound."""
+    at: float
+    """Value of the driver there [m or rad]."""
+    joint: str | None
+    """Name of the joint; `None` for a force without bound."""
 
 
 @dataclass(frozen=True)
@@ -355,9 +371,20 @@ class Range:
     poses: dict[str, NDArray]
     """Poses of each body: x, y, phi by sample."""
     measures: dict[str, NDArray] = field(default_factory=dict)
-    """Values of each measure with a coordinate [m or rad]."""
+    """Values of each measure in SI units; not a number where a computed one has none."""
     extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict)
-    """Least and greatest value of each of them, located to rounding."""
+    """Least and greatest value of each of them, located to rounding; infinite where it grows without
+    bound."""
+    speed: float | None = None
+    """Speed of the driver at which forces and computed measures are [m/s or rad/s]; without one forces
+    are at rest."""
+    effort: Extreme | None = None
+    """Largest effort of the driver [N or N m], infinite where it grows without bound; `None` without
+    forces."""
+    reaction: JointForce | None = None
+    """Largest force in a joint; `None` without forces."""
+    without_forces: str | None = None
+    """Places where there are no forces, and why, in words."""
 
     @property
     def turns(self) -> bool:
@@ -377,6 +404,9 @@ class Mode:
     rcond: float
     """Reciprocal condition."""
 
+    def __repr__(self) -> str:
+        return f"<biela.Mode of {', '.join(self.poses)}: rcond {self.rcond:.2g}>"
+
 
 @dataclass(frozen=True)
 class Modes:
@@ -385,6 +415,10 @@ class Modes:
     others: tuple[Mode, ...]
     complete: bool
     """Whether there are no others."""
+
+    def __repr__(self) -> str:
+        more = "" if self.complete else ", perhaps more"
+        return f"<biela.Modes: {len(self.others)} others{more}>"
 
 
 @dataclass(frozen=True)
@@ -400,6 +434,10 @@ class Equilibrium:
     N m]."""
     left_out: tuple[str, ...]
     """Friction that does not suffice on the way: the equilibrium is that of all other forces."""
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
+        return f"<biela.Equilibrium: {values}>"
 
 
 @dataclass(frozen=True)
@@ -426,6 +464,10 @@ class StateSpace:
     [N or N m]: what is held does not move in these equations."""
     taken: tuple[str, ...] = ()
     """Names of the states of freedoms that `drive` moves, which are no states here."""
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"<biela.StateSpace of {', '.join(self.states)}: {counts}>"
 
     def to_control(self):
         """Returns the equations as a `control.StateSpace` with the names of states, inputs and outputs,
@@ -518,6 +560,21 @@ class Report:
     def _assembled(self) -> dict[str, Any]:
         return self.data.get("assembled", {})
 
+    def _repr_html_(self) -> str:
+        problems = [(d.severity, d.code, d.message, d.help or "") for d in self.diagnostics]
+        poses = [(body, *(f"{value:.6f}" for value in pose)) for body, pose in self.poses.items()]
+        measures = [(name, f"{value:.6f}") for name, value in self.measures.items()]
+        return (
+            f"<p>{html.escape(self._state)}</p>"
+            + table(("", "code", "problem", "help"), problems)
+            + table(("body", "x [m]", "y [m]", "phi [rad]"), poses)
+            + table(("measure", "value [m or rad]"), measures)
+            + "".join(f"<p>{html.escape(text)}</p>" for text in self.warnings)
+        )
+
+    @property
+    def _state(self) -> str:
+        return "closes" if self.ok else self.error or "has errors"
+
     def __repr__(self) -> str:
-        state = "closes" if self.ok else self.error or "has errors"
-        return f"<biela.Report: {state}>"
+        return f"<biela.Report: {self._state}>"

@@ -1,6 +1,7 @@
 //! Errors as exceptions of the package.
 
 use biela::kinematics;
+use biela_tools::cli::Failed;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -46,6 +47,16 @@ impl Failure {
         match self {
             Self::Usage(message) | Self::Assembly(message) | Self::File(message) => Ok(message),
             other => Err(other),
+        }
+    }
+}
+
+impl From<Failed> for Failure {
+    fn from(failed: Failed) -> Self {
+        match failed {
+            Failed::Usage(message) => Self::Usage(message),
+            Failed::Mechanism(message) => Self::Assembly(message),
+            other => Self::File(other.to_string()),
         }
     }
 }

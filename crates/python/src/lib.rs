@@ -31,16 +31,21 @@ mod sweep;
 mod timing;
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
+use biela_tools::cli;
 use pyo3::prelude::*;
 
 use crate::call::apart;
 use crate::error::Failure;
 
+/// A platform: name, system, oldest glibc, place of the library.
+type PlatformTuple = (&'static str, &'static str, Option<String>, Option<String>);
+
 /// Runs the program with these arguments, the first being its own name; returns its exit status.
 #[pyfunction]
 fn program(py: Python<'_>, arguments: Vec<OsString>) -> Result<u8, Failure> {
-    apart(py, || Ok(biela_tools::cli::status(arguments)))
+    apart(py, || Ok(cli::status(arguments)))
 }
 
 /// Fails as a defect of biela would; for tests, not in wheels.
@@ -54,20 +59,51 @@ fn defect(py: Python<'_>) -> Result<(), Failure> {
 #[pyfunction]
 fn unknown_name(kind: &str, name: &str, known: Vec<String>) -> String {
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    biela_tools::cli::unknown_name(kind, name, &known)
+    cli::unknown_name(kind, name, &known)
 }
 
 /// Returns the names of the mechanisms that come with biela.
 #[pyfunction]
 fn shipped() -> Vec<&'static str> {
-    biela_tools::cli::shipped().collect()
+    cli::shipped().collect()
 }
 
 /// Returns the text of a mechanism that comes with biela.
 #[pyfunction]
 fn shipped_text(name: &str) -> Result<&'static str, Failure> {
-    let found = biela_tools::cli::shipped_text(name).map_err(Failure::Usage);
+    let found = cli::shipped_text(name).map_err(Failure::Usage);
     found.map(|(text, _)| text)
+}
+
+/// Writes a copy of a mechanism that comes with biela under another name; returns its path.
+#[pyfunction]
+fn new(name: &str, template: &str, folder: PathBuf) -> Result<PathBuf, Failure> {
+    Ok(cli::new(name, template, &folder)?)
+}
+
+/// Reads a mechanism of another program; returns its name, the text of its file, and remarks.
+#[pyfunction]
+fn import_mechanism(
+    py: Python<'_>,
+    file: PathBuf,
+    length: Option<&str>,
+) -> Result<(String, String, Vec<String>), Failure> {
+    apart(py, || Ok(cli::import(&file, length)?))
+}
+
+/// Returns the platforms of FMUs: name, system, oldest glibc, and the place of the library.
+#[pyfunction]
+fn platforms(runtime: Option<PathBuf>) -> Result<Vec<PlatformTuple>, Failure> {
+    let rows = cli::platforms(runtime.as_deref())?.into_iter();
+    Ok(rows
+        .map(|row| (row.name, row.system, row.glibc, row.library))
+        .collect())
+}
+
+/// Returns the JSON Schema of mechanism files.
+#[pyfunction]
+fn schema() -> String {
+    format!("{:#}\n", biela::mechanism::Mechanism::schema())
 }
 
 #[pymodule]
@@ -76,6 +112,10 @@ fn _biela(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(program, module)?)?;
     module.add_function(wrap_pyfunction!(unknown_name, module)?)?;
     module.add_function(wrap_pyfunction!(shipped, module)?)?;
+    module.add_function(wrap_pyfunction!(new, module)?)?;
+    module.add_function(wrap_pyfunction!(import_mechanism, module)?)?;
+    module.add_function(wrap_pyfunction!(platforms, module)?)?;
+    module.add_function(wrap_pyfunction!(schema, module)?)?;
     module.add_function(wrap_pyfunction!(shipped_text, module)?)?;
     #[cfg(debug_assertions)]
     module.add_function(wrap_pyfunction!(defect, module)?)?;

@@ -5,11 +5,12 @@ use std::sync::{Arc, OnceLock};
 
 use biela::dynamics::Motion;
 use biela::kinematics::{
-    AssemblyMode, Direction, Output, Path, Pose, RangeSettings, Solver, SolverChoices, offer_start,
+    AssemblyMode, Direction, Output, Path, Pose, Solver, SolverChoices, offer_start,
 };
 use biela::mechanism::{Diagnostic, DriverId, Mechanism as Model, Order, ParameterId, Source};
-use biela_tools::cli;
-use biela_tools::drawing::{Diagram, Followed, ForcePlace, svg};
+use biela_tools::cli::{self, ArchiveOptions};
+use biela_tools::drawing::{Diagram, Followed, ForcePlace, svg, usual_driver};
+use biela_tools::exchange::WorkshopDrawing;
 use biela_tools::page::{Place, edit};
 use pyo3::prelude::*;
 
@@ -41,6 +42,12 @@ type TargetRow = (usize, Option<(String, bool)>, Vec<usize>, Vec<f64>, f64);
 /// Contents of a drawing: traces, number of poses, driver that moves, dimensions, instant centres,
 /// forces.
 type Contents = (bool, usize, Option<String>, bool, bool, bool);
+
+/// A text, and what is worth knowing of it.
+type Told = (String, Vec<String>);
+
+/// A drawing as SVG, the bytes of a file, and remarks on it.
+type DrawingRow = (String, Option<Vec<u8>>, Vec<String>);
 
 /// A mechanism file that has no errors.
 #[pyclass(frozen)]
@@ -216,7 +223,7 @@ impl Mechanism {
         Ok(names.zip(parameters).chain(freedoms).collect())
     }
 
-    /// Runs the mechanism; `columns` are indices, `by` names of parameters.
+    /// Runs the mechanism; `columns` are indices, `by` names of parameters. Without a film it has no page.
     fn run(
         &self,
         py: Python<'_>,
@@ -224,24 +231,27 @@ impl Mechanism {
         parameters: Vec<(String, Value)>,
         columns: Vec<usize>,
         by: Vec<String>,
+        film: bool,
     ) -> Result<Run, Failure> {
         apart(py, || {
             let (scenario, parameters) = self.set(motions, parameters)?;
             let by = by.iter().map(|name| self.direction(name));
             let by: Vec<_> = by.collect::<Result<_, _>>()?;
             let told = self.all_columns().iter().filter(|column| column.is_told());
-            let told = told.cloned().collect();
+            let told = film.then(|| told.cloned().collect());
             run(&scenario, &parameters, &self.chosen(&columns), &by, told)
         })
     }
 
-    /// Runs variants of the mechanism; each swept parameter has one value per variant.
+    /// Runs variants of the mechanism; each swept parameter has one value per variant, each swept motion
+    /// of a driver, or size of a force, that of each variant one after the other.
     fn sweep(
         &self,
         py: Python<'_>,
         motions: Motions,
         parameters: Vec<(String, Value)>,
         swept: Vec<(String, Vec<f64>)>,
+        courses: Vec<(String, [Vec<f64>; 3])>,
         variants: usize,
         columns: Vec<usize>,
     ) -> Result<Sweep, Failure> {
@@ -251,10 +261,16 @@ impl Mechanism {
             let swept = swept.into_iter();
             let swept = swept.map(|(name, values)| Ok((self.quantity(&name)?, values)));
             let swept: Vec<_> = swept.collect::<Result<_, Failure>>()?;
+            let courses = courses.into_iter();
+            let courses = courses.filter_map(|(name, orders)| {
+                let place = scenario.place(&name)?;
+                Some((place, orders))
+            });
             let variants = Variants {
                 scenario: &scenario,
                 parameters: &parameters,
                 swept: &swept,
+                courses: &courses.collect::<Vec<_>>(),
                 count: variants,
                 columns: &self.chosen(&columns),
             };
@@ -336,18 +352,18 @@ impl Mechanism {
         driver: &str,
         motions: Motions,
         parameters: Vec<(String, Value)>,
-        bounds: [Option<f64>; 2],
+        bounds: [Option<Value>; 2],
+        speed: Option<f64>,
     ) -> Result<RangeRow<'py>, Failure> {
         let (id, range) = apart(py, || {
             let (scenario, parameters) = self.set(motions, parameters)?;
             let id = self.driver_named(driver)?;
+            let bounds = self.bounds(bounds, &parameters)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&parameters)?;
-            let settings = RangeSettings {
-                bounds,
-                ..RangeSettings::default()
-            };
-            Ok((id, runner.motion.solver.range(id, &settings)))
+            let names = ["between[0]", "between[1]", "speed"];
+            let range = cli::range(&mut runner.motion.solver, id, bounds, speed, names)?;
+            Ok((id, range))
         })?;
         Ok(range_row(py, &self.model, id, &range))
     }
@@ -410,7 +426,8 @@ impl Mechanism {
         })
     }
 
-    /// Draws the mechanism at the start of a motion, as SVG.
+    /// Draws the mechanism at the start of a motion, as SVG, and as the file `path` in the format of its
+    /// extension; returns contours that it leaves out too.
     fn draw(
         &self,
         py: Python<'_>,
@@ -419,7 +436,9 @@ impl Mechanism {
         width: Option<u32>,
         transparent: bool,
         contents: Contents,
-    ) -> Result<String, Failure> {
+        bounds: [Option<Value>; 2],
+        path: Option<PathBuf>,
+    ) -> Result<DrawingRow, Failure> {
         let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
         apart(py, || {
             let (scenario, parameters) = self.set(motions, parameters)?;
@@ -435,11 +454,17 @@ impl Mechanism {
             }
             let mut runner = Runner::new(&scenario, &columns)?;
             runner.start(&parameters)?;
+            let bounds = self.bounds(bounds, &parameters)?;
+            cli::check_order(bounds, ["between[0]", "between[1]"])?;
             let driver = driver.map(|name| self.driver_named(&name)).transpose()?;
-            let followed = driver.map(|driver| Followed {
-                driver,
-                bounds: [None; 2],
-            });
+            let is_bounded = bounds.iter().any(Option::is_some);
+            let usual = || usual_driver(&self.model).filter(|_| is_bounded);
+            let followed = driver.or_else(usual);
+            if is_bounded && followed.is_none() {
+                let message = "between: the mechanism has no driver".to_owned();
+                return Err(Failure::Usage(message));
+            }
+            let followed = followed.map(|driver| Followed { driver, bounds });
             let Motion {
                 solver, solution, ..
             } = &mut runner.motion;
@@ -454,8 +479,70 @@ impl Mechanism {
                 forces: places.into_iter().zip(values).collect(),
             };
             let sheet = diagram.sheet(&mut runner.motion.solver)?;
-            let width = width.unwrap_or(sheet.width());
-            Ok(svg::write(&sheet, width, transparent))
+            let own = svg::write(&sheet, width.unwrap_or(sheet.width()), transparent);
+            let is_dxf = |path: &PathBuf| {
+                path.extension()
+                    .is_some_and(|e| e.eq_ignore_ascii_case("dxf"))
+            };
+            let (file, notes) = match path {
+                None => (None, Vec::new()),
+                Some(path) if is_dxf(&path) => {
+                    let scene = diagram.scene(&mut runner.motion.solver);
+                    let drawing = WorkshopDrawing::new(&scene, &runner.motion.solver);
+                    (Some(drawing.text.into_bytes()), drawing.notes)
+                }
+                Some(path) => {
+                    let picture = cli::picture(&path, &sheet, width, transparent)?;
+                    (Some(picture), Vec::new())
+                }
+            };
+            let notes = notes.iter().map(ToString::to_string).collect();
+            Ok((own, file, notes))
+        })
+    }
+
+    /// Returns the file for another program at the start of a motion, and remarks.
+    fn convert(
+        &self,
+        py: Python<'_>,
+        to: &str,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+    ) -> Result<Told, Failure> {
+        apart(py, || {
+            let (scenario, parameters) = self.set(motions, parameters)?;
+            let mut runner = Runner::new(&scenario, &[])?;
+            runner.start(&parameters)?;
+            Ok(cli::convert(to, &runner.motion.solver)?)
+        })
+    }
+
+    /// Returns the page of `biela report` at the start of a motion, and warnings.
+    fn page_of_report(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+    ) -> Result<Told, Failure> {
+        apart(py, || {
+            let (scenario, parameters) = self.set(motions, parameters)?;
+            let driven = &scenario.driven;
+            Ok(cli::report(&self.source, &self.model, driven, &parameters)?)
+        })
+    }
+
+    /// Returns the files of `biela page`, each with its path.
+    fn page(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        share: Option<&str>,
+        solver: Option<PathBuf>,
+        studio: Option<&str>,
+    ) -> Result<Vec<(PathBuf, String)>, Failure> {
+        apart(py, || {
+            let (source, model, solver) = (&self.source, &self.model, solver.as_deref());
+            Ok(cli::page(source, model, (&path, share), solver, studio)?)
         })
     }
 
@@ -489,25 +576,63 @@ impl Mechanism {
         })
     }
 
-    /// Returns the bytes of the FMU.
+    /// Returns the bytes of the FMU, without its page if `no_page`, in a system of SSP if `ssp`.
     fn fmu(
         &self,
         py: Python<'_>,
         fmi: &str,
-        terminals: bool,
+        parts: [bool; 3],
         runtime: Option<PathBuf>,
         platforms: Vec<String>,
     ) -> Result<Vec<u8>, Failure> {
-        let platforms: Vec<&str> = platforms.iter().map(String::as_str).collect();
+        let [terminals, no_page, ssp] = parts;
+        let options = ArchiveOptions {
+            fmi,
+            terminals,
+            runtime: runtime.as_deref(),
+            platforms: platforms.iter().map(String::as_str).collect(),
+            no_page,
+            ssp,
+        };
         apart(py, || {
-            let (source, model, runtime) = (&self.source, &self.model, runtime.as_deref());
-            let archive = cli::archive(source, model, fmi, terminals, runtime, &platforms);
-            archive.map_err(Failure::File)
+            cli::archive(&self.source, &self.model, &options).map_err(Failure::File)
+        })
+    }
+
+    /// Returns the modelDescription.xml of the FMU.
+    fn model_description(&self, py: Python<'_>, fmi: &str) -> Result<Vec<u8>, Failure> {
+        apart(py, || {
+            Ok(cli::model_description_of(&self.source, &self.model, fmi)?)
         })
     }
 }
 
 impl Mechanism {
+    /// Returns the bounds of a driver as numbers \[m or rad\].
+    fn bounds(
+        &self,
+        bounds: [Option<Value>; 2],
+        parameters: &[f64],
+    ) -> Result<[Option<f64>; 2], Failure> {
+        let mut numbers = [None; 2];
+        for (number, bound) in numbers.iter_mut().zip(bounds) {
+            *number = match bound {
+                None => continue,
+                Some(Value::Number(value)) => Some(value),
+                Some(Value::Text(text)) => {
+                    let expression = self.model.parse_expression(&text, None);
+                    let refuse = |why| Failure::Usage(format!("between: {why}\n  {text}"));
+                    let value = expression.map_err(|error| refuse(error.message))?;
+                    Some(value.value(parameters))
+                        .filter(|value| value.is_finite())
+                        .ok_or_else(|| refuse("the value is not finite".to_owned()))
+                        .map(Some)?
+                }
+            };
+        }
+        Ok(numbers)
+    }
+
     fn driver_named(&self, name: &str) -> Result<DriverId, Failure> {
         self.model.driver_id(name).ok_or_else(|| {
             let names = self.model.drivers.iter().map(|d| d.name.as_str());

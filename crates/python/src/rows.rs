@@ -1,11 +1,11 @@
 //! Named things, ranges, equilibria and diagnostics as rows: tuples to which the package gives names.
 
 use biela::dynamics::{Equilibrium, Held, StateSpace};
-use biela::kinematics::{End, Pose, Range};
+use biela::kinematics::{End, Extreme, Pose};
 use biela::mechanism::{
     Diagnostic, Driver, DriverId, ForceComponent, Mechanism, Parameter, Source, Unit,
 };
-use biela_tools::cli;
+use biela_tools::cli::{self, ToldRange};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -72,7 +72,8 @@ type ExtremeRow = (f64, f64);
 
 /// A range: both ends, then the change points with the bodies and connections that are dependent
 /// there, listed and in words, then by sample the driver's value, the transmission angle, the
-/// reciprocal condition, the poses of the bodies and the measures, then the extremes of these.
+/// reciprocal condition, the poses of the bodies and the measures, then the extremes of these, none
+/// where a computed measure has no value, and the forces.
 pub(crate) type RangeRow<'py> = (
     EndRow,
     EndRow,
@@ -82,7 +83,16 @@ pub(crate) type RangeRow<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
-    Vec<(String, [ExtremeRow; 2])>,
+    Vec<(String, Option<[ExtremeRow; 2]>)>,
+    ForcesRow,
+);
+
+/// Largest forces over a range: the effort, then the force in a joint and the joint, each with the
+/// driver's value; places without forces, in words.
+type ForcesRow = (
+    Option<ExtremeRow>,
+    Option<(ExtremeRow, Option<String>)>,
+    Option<String>,
 );
 
 /// Returns diagnostics as rows.
@@ -209,8 +219,10 @@ pub(crate) fn range_row<'py>(
     py: Python<'py>,
     mechanism: &Mechanism,
     driver: DriverId,
-    range: &Range,
+    told: &ToldRange,
 ) -> RangeRow<'py> {
+    let range = &told.range;
+    let extreme = |extreme: &Extreme| (extreme.value, extreme.driver);
     let samples = || range.samples.iter();
     let column = |values: Vec<f64>| values.into_pyarray(py);
     let poses = 3 * mechanism.bodies.len();
@@ -233,13 +245,31 @@ pub(crate) fn range_row<'py>(
                 .flat_map(|s| s.pose.q[..poses].iter().copied())
                 .collect(),
         ),
-        column(samples().flat_map(|s| s.measures.iter().copied()).collect()),
-        (mechanism.measures.iter().zip(&range.measures))
-            .map(|(measure, extremes)| {
-                let extremes = extremes.map(|extreme| (extreme.value, extreme.driver));
-                (measure.name.clone(), extremes)
-            })
+        column(
+            (samples().enumerate())
+                .flat_map(|(index, sample)| {
+                    let derived = told.derived.iter().map(move |(values, _)| values[index]);
+                    sample.measures.iter().copied().chain(derived)
+                })
+                .collect(),
+        ),
+        measures(mechanism)
+            .into_iter()
+            .map(|(name, ..)| name)
+            .zip(
+                (range.measures.iter().map(Some))
+                    .chain(told.derived.iter().map(|(_, extremes)| extremes.as_ref()))
+                    .map(|extremes| extremes.map(|both| both.each_ref().map(extreme))),
+            )
             .collect(),
+        (
+            told.effort.as_ref().map(extreme),
+            told.reaction.as_ref().map(|(force, joint)| {
+                let joint = joint.map(|joint| mechanism.joints[joint].name.clone());
+                (extreme(force), joint)
+            }),
+            told.without_forces.clone(),
+        ),
     )
 }
 

@@ -24,7 +24,8 @@ pub(crate) struct Run {
     values: Vec<f64>,
     /// Derivatives by row, then by direction, then by column.
     gradient: Vec<f64>,
-    film: Film,
+    /// None unless it was asked for.
+    film: Option<Film>,
     /// Number of rows that were reached.
     #[pyo3(get)]
     rows: usize,
@@ -58,17 +59,20 @@ impl Run {
     /// Returns whether the run has forces that arrows can show.
     #[getter]
     fn has_forces(&self) -> bool {
-        self.film.has_forces()
+        self.film.as_ref().is_some_and(Film::has_forces)
     }
 
-    /// Returns the page on which the mechanism moves; `None` for a run without rows.
+    /// Returns the page on which the mechanism moves; `None` for a run without rows or film.
     fn page(&self, py: Python<'_>, forces: bool) -> Result<Option<String>, Failure> {
-        apart(py, || Ok(self.film.page(&self.mechanism, forces)))
+        apart(py, || {
+            let film = self.film.as_ref();
+            Ok(film.and_then(|film| film.page(&self.mechanism, forces)))
+        })
     }
 }
 
-/// Runs a mechanism; records the columns, and their derivatives along the directions. The film tells
-/// the columns `told`.
+/// Runs a mechanism; records the columns, and their derivatives along the directions. With columns that
+/// a film tells, it makes one.
 ///
 /// # Errors
 ///
@@ -78,18 +82,21 @@ pub(crate) fn run(
     parameters: &[f64],
     columns: &[Output],
     by: &[Direction],
-    told: Vec<Output>,
+    told: Option<Vec<Output>>,
 ) -> Result<Run, Failure> {
     let mut runner = Runner::along(scenario, columns, by)?;
     let rows = scenario.times.len();
     runner.start(parameters)?;
-    let arrows = ForcePlace::sought(&mut runner.motion.solver, &runner.motion.solution);
+    let film = told.map(|told| {
+        let arrows = ForcePlace::sought(&mut runner.motion.solver, &runner.motion.solution);
+        Film::new(told, arrows, rows, parameters)
+    });
     runner.watch_contacts()?;
     let mut result = Run {
         mechanism: scenario.driven.clone(),
         values: Vec::with_capacity(rows * columns.len()),
         gradient: Vec::with_capacity(rows * columns.len() * by.len()),
-        film: Film::new(told, arrows, rows, parameters),
+        film,
         rows: 0,
         stop: None,
         notices: scenario.whole_angles(),
@@ -115,7 +122,9 @@ pub(crate) fn run(
             let directions = runner.directions(by)?;
             runner.differentiate(columns, &directions, &mut result.gradient)?;
         }
-        result.film.add(row, &runner.motion);
+        if let Some(film) = &mut result.film {
+            film.add(row, &runner.motion);
+        }
         result.rows += 1;
     }
     result.events = events.into_iter().map(|event| (0, event)).collect();

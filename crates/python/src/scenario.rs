@@ -40,6 +40,12 @@ impl Samples {
         Jet::new(position[row], [velocity[row], acceleration[row]])
     }
 
+    /// Takes over value, velocity and acceleration at the times.
+    pub(crate) fn take(&mut self, orders: [&[f64]; 3]) {
+        let own = self.orders.iter_mut().zip(orders);
+        own.for_each(|(own, order)| own.copy_from_slice(order));
+    }
+
     /// Sets the value at a time, by its index.
     pub(crate) fn set(&mut self, row: usize, value: f64) {
         self.orders[0][row] = value;
@@ -69,7 +75,31 @@ pub(crate) struct Scenario {
 /// Value or velocity of a freedom at the start \[SI\].
 pub(crate) type Start = (DriverId, Order, f64);
 
+/// Place of what a call gives as arrays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Place {
+    /// Samples of a driver, by their index.
+    Samples(usize),
+    /// Sizes of an input of forces, by their index.
+    Loads(usize),
+}
+
 impl Scenario {
+    /// Returns the place of the arrays of a driver or an input of forces of this name, if it has some.
+    pub(crate) fn place(&self, name: &str) -> Option<Place> {
+        let driver = self.own.driver_id(name);
+        let samples = self.samples.iter();
+        let samples = samples.enumerate().find(|(_, s)| Some(s.driver) == driver);
+        let inputs = self.driven.load_inputs();
+        let loads = || {
+            let mut loads = self.loads.iter();
+            loads.position(|(place, _)| inputs[*place].name == name)
+        };
+        samples
+            .map(|(index, _)| Place::Samples(index))
+            .or_else(|| loads().map(Place::Loads))
+    }
+
     /// Returns warnings of angles that look like degrees.
     pub(crate) fn whole_angles(&self) -> Vec<String> {
         let samples = self.samples.iter().filter_map(|samples| {

@@ -14,7 +14,7 @@ use crate::call::Interrupt;
 use crate::error::Failure;
 use crate::events::{EventColumns, event_columns};
 use crate::runner::{BATCH, Runner};
-use crate::scenario::{Scenario, Start};
+use crate::scenario::{Place, Scenario, Start};
 
 /// The rows of many variants.
 #[pyclass]
@@ -59,6 +59,9 @@ pub(crate) struct Variants<'a> {
     pub(crate) parameters: &'a [f64],
     /// The quantities that are swept, with a value per variant \[SI\].
     pub(crate) swept: &'a [(Quantity, Vec<f64>)],
+    /// The arrays of drivers and inputs of forces that are swept: positions, velocities and accelerations,
+    /// or sizes first, by variant, then by row.
+    pub(crate) courses: &'a [(Place, [Vec<f64>; 3])],
     pub(crate) count: usize,
     pub(crate) columns: &'a [Output],
 }
@@ -144,8 +147,19 @@ impl Variants<'_> {
             own.set_starts(&starts)?;
             *runner = Runner::new(&own, columns)?;
         }
-        runner.start(&parameters)?;
         let rows = scenario.times.len();
+        for (place, orders) in self.courses {
+            let orders = orders.each_ref();
+            let orders = orders.map(|order| &order[variant * rows..(variant + 1) * rows]);
+            if !orders.into_iter().flatten().all(|value| value.is_finite()) {
+                return Err(Failure::Usage("drive: expected finite numbers".to_owned()));
+            }
+            match *place {
+                Place::Samples(index) => runner.scenario.samples[index].take(orders),
+                Place::Loads(index) => runner.scenario.loads[index].1.copy_from_slice(orders[0]),
+            }
+        }
+        runner.start(&parameters)?;
         for row in 0..rows {
             interrupt.check()?;
             let advanced = match row {
