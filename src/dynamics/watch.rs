@@ -201,23 +201,44 @@ impl Watch {
     }
 }
 
-/// Returns the event indicators of a mechanism, each by the index of its force; of a contact the least of its
-/// elements.
-pub fn event_indicators(mechanism: &Mechanism) -> Vec<usize> {
-    let forces = mechanism.forces.iter().enumerate();
-    let is_elastic = |load: &Load| load.law().is_some_and(|law| law.stop.is_some());
-    let passive = forces
-        .filter(|(_, force)| matches!(force.load, Load::Passive { .. }) || is_elastic(&force.load));
-    let first = passive.filter(|(index, _)| mechanism.elements_with(*index).start == *index);
-    let indicators = first.flat_map(|(index, _)| [index; FUNCTIONS]);
-    let forces = mechanism.forces.iter().enumerate();
-    let turns = forces.flat_map(|(index, force)| vec![index; 2 * force.load.corners()]);
-    let indicators = indicators.chain(turns);
-    if mechanism.has_freedoms() {
-        indicators.collect()
-    } else {
-        Vec::new()
+/// Returns what each event indicator of a mechanism watches, in words; of a contact the least of its elements.
+pub fn event_indicators(mechanism: &Mechanism) -> Vec<String> {
+    if !mechanism.has_freedoms() {
+        return Vec::new();
     }
+    let forces = mechanism.forces.iter();
+    let is_first = |index: &usize| mechanism.elements_with(*index).start == *index;
+    let firsts = forces.clone().enumerate().filter(|(index, _)| is_first(index));
+    let passive = firsts.flat_map(|(_, force)| {
+        let watched = match &force.load {
+            Load::Passive { cause, .. } if !cause.is_contact() => [
+                "speed while friction slides, force above the least that sticks",
+                "force below the largest that sticks",
+            ],
+            Load::Passive { .. } => [
+                "gap above the least value while nothing touches, then the push",
+                "gap below the largest value while nothing touches",
+            ],
+            load if load.law().is_some_and(|law| law.stop.is_some()) => [
+                "gap above the least value while nothing touches, then the force of spring and damper",
+                "gap below the largest value while nothing touches, then the depth",
+            ],
+            _ => return Vec::new(),
+        };
+        watched.map(|watched| format!("`{}`: {watched}", force.name)).to_vec()
+    });
+    let turns = forces.flat_map(|force| {
+        let sides = ["above the point before", "below the point after"];
+        let corners =
+            (1..=force.load.corners()).flat_map(move |corner| sides.map(|side| (corner, side)));
+        corners.map(|(corner, side)| {
+            format!(
+                "`{}`: argument {corner} of its functions {side}",
+                force.name
+            )
+        })
+    });
+    passive.chain(turns).collect()
 }
 
 /// Returns the difference of two times that is rounding \[s\].

@@ -34,7 +34,7 @@ impl Category {
         (Self::Fatal, "defects of biela"),
         (
             Self::Events,
-            "initialization, reset, termination, FMU states, change points, sources of rates",
+            "initialization, reset, termination, FMU states, change points, stops, friction, sources of rates",
         ),
         (Self::Solver, "iterations and sub-steps of each step"),
     ];

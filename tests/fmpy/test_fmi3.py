@@ -59,9 +59,10 @@ def test_the_fmu_is_valid(fmu3, name):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-@pytest.mark.parametrize("name", ["cam_points", "four_bar", "rack_drive", "tlv"])
+@pytest.mark.parametrize("name", ["cam_points", "four_bar", "rack_drive", "slider_crank_motor", "tlv"])
 def test_terminals_are_valid_and_name_variables(fmu, fmu3, tmp_path, name, version):
-    """One terminal per driver and per marker among the outputs, in FMI 2.0 if they are wanted."""
+    """One terminal per driver, per marker among the outputs and per force that is an input, in FMI 2.0
+    if they are wanted."""
     if version == 3:
         exported = fmu3(name)
     else:
@@ -85,6 +86,9 @@ def test_terminals_are_valid_and_name_variables(fmu, fmu3, tmp_path, name, versi
             assert variable.causality in ("input", "output")
             expected = f"{terminal.get('name')}.{member.get('memberName')}"
             assert variable.name == expected
+    if name == "slider_crank_motor":
+        (member,) = next(t for t in document.iter("Terminal") if t.get("name") == "motor")
+        assert (member.get("variableName"), member.get("variableKind")) == ("motor.effort", "inflow")
 
 
 @pytest.mark.parametrize("name", SHIPPED)

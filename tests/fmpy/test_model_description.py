@@ -354,6 +354,30 @@ def test_units_and_display_units(fmu):
     assert display_unit_of(fmu("turning_yoke").variables["speed"]) == "rpm"
 
 
+def test_forces_and_energies_have_quantities_and_magnitudes(fmu):
+    """The weight of both masses of the motor's slider-crank, to one digit, and that times its size."""
+    description = fmu("slider_crank_motor")
+    root = etree.parse(description.folder / "modelDescription.xml")
+    element = lambda name: root.find(f".//ScalarVariable[@name='{name}']/Real")
+    quantity = lambda name: root.find(
+        f".//SimpleType[@name='{element(name).get('declaredType')}']/Real"
+    ).get("quantity")
+    assert quantity("motor.effort") == "Torque" and quantity("pump.effort") == "Force"
+    assert quantity("energy.kinetic") == "Energy"
+    size = float(element("crank.x").get("nominal"))
+    force, torque, energy = (float(element(f"{name}").get("nominal")) for name in
+                             ("pump.effort", "motor.effort", "energy.kinetic"))
+    assert torque == energy and torque == pytest.approx(force * size, rel=0.6)
+
+
+@pytest.mark.parametrize("name", ["servo_arm", "sash_window"])
+def test_event_indicators_are_described_by_what_they_watch(fmu, name):
+    variables = fmu(name).description.modelVariables
+    watched = [v.description for v in variables if v.name.startswith("event_indicator")]
+    assert len(set(watched)) == len(watched) > 0
+    assert all(re.match(r"`\w+`: (gap|speed|force|argument) ", text) for text in watched)
+
+
 # ---------------------------------------------------------------------------------------------
 # Model structure
 

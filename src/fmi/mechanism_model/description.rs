@@ -13,7 +13,7 @@ use crate::fmi::model_description::{Experiment, Member, ModelDescription, Termin
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable, value_reference};
 use crate::kinematics::{OutputSource, Structure, System};
-use crate::mechanism::{Mechanism, Order, Unit, rounded};
+use crate::mechanism::{BodyId, Mechanism, Order, Unit, rounded};
 
 /// Returns the model description of a mechanism's FMU for a version of the standard.
 #[must_use]
@@ -100,8 +100,8 @@ pub(super) fn describe_decided<'a>(
     }
 }
 
-/// Returns a terminal per driver, with all variables of the driver that cross the interface, and one
-/// per marker among the outputs.
+/// Returns a terminal per driver, with all variables of the driver that cross the interface, one per
+/// marker among the outputs, and one per force that is an input.
 fn terminals(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Vec<Terminal> {
     let drivers = mechanism.drivers.iter().map(|driver| {
         let description = if driver.description.is_empty() {
@@ -116,28 +116,43 @@ fn terminals(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Vec<Ter
         let description = format!("marker `{path}`");
         (path, description)
     });
-    let terminals = drivers.chain(markers).map(|(name, description)| {
-        let members = variables.iter().filter_map(|variable| {
-            let member = variable.name.strip_prefix(&name)?.strip_prefix('.')?;
-            let crosses = variable.causality == Causality::Input || variable.causality.is_output();
-            (crosses && !member.contains('.')).then(|| Member {
-                name: member.to_owned(),
-                variable: variable.name.clone(),
-                is_flow: member == "effort",
-            })
-        });
-        let members = members.collect();
-        Terminal {
-            name,
-            description,
-            members,
-        }
+    let mut forces: Vec<usize> = (mechanism.force_inputs().iter())
+        .map(|component| component.force)
+        .collect();
+    forces.dedup();
+    let is_force =
+        |variable: &Variable<Quantity>| matches!(variable.quantity, Quantity::ForceInput(_));
+    let forces = forces.into_iter().map(|force| {
+        let name = &mechanism.forces[force].name;
+        (name.clone(), format!("force `{name}`"))
     });
+    let terminals = drivers
+        .chain(markers)
+        .chain(forces)
+        .map(|(name, description)| {
+            let members = variables.iter().filter_map(|variable| {
+                let member = variable.name.strip_prefix(&name)?.strip_prefix('.')?;
+                let crosses =
+                    variable.causality == Causality::Input || variable.causality.is_output();
+                (crosses && !member.contains('.')).then(|| Member {
+                    name: member.to_owned(),
+                    variable: variable.name.clone(),
+                    is_flow: member == "effort" || is_force(variable),
+                })
+            });
+            let members = members.collect();
+            Terminal {
+                name,
+                description,
+                members,
+            }
+        });
     terminals.collect()
 }
 
 /// Gives lengths among inputs and outputs the mechanism's size as their usual magnitude, rounded to
-/// one digit. Angles have the order of 1, which is the default.
+/// one digit; forces the weight W of the bodies, torques and energies W times the size. Angles have the
+/// order of 1, which is the default.
 fn set_nominal(mechanism: &Arc<Mechanism>, variables: &mut [Variable<Quantity>]) {
     let system = System::new(Arc::clone(mechanism));
     let (mut at, mut targets) = (system.configuration(), system.targets());
@@ -148,18 +163,40 @@ fn set_nominal(mechanism: &Arc<Mechanism>, variables: &mut [Variable<Quantity>])
     {
         return;
     }
-    let size = rounded(at.size(), 1);
+    let bodies = (0..mechanism.bodies.len()).map(BodyId);
+    let masses = bodies.filter_map(|body| Some(mechanism.weight_at(body, &parameters)?.mass));
+    let [gx, gy] = mechanism
+        .simulation
+        .gravity
+        .each_ref()
+        .map(|g| g.value(&parameters));
+    let weight = masses.sum::<f64>() * gx.hypot(gy);
+    let magnitudes = [
+        (Unit::METRE, at.size()),
+        (Unit::NEWTON, weight),
+        (Unit::NEWTON_METRE, weight * at.size()),
+        (Unit::JOULE, weight * at.size()),
+    ];
+    let magnitudes = magnitudes.map(|(unit, size)| (unit.name, rounded(size, 1)));
     for variable in variables {
-        let is_position = matches!(
+        let has_magnitude = matches!(
             variable.quantity,
             Quantity::Input(_, Order::Position)
-                | Quantity::Output(OutputSource::Signal(_, Order::Position))
+                | Quantity::ForceInput(_)
+                | Quantity::Output(
+                    OutputSource::Signal(_, Order::Position) | OutputSource::Force(_)
+                )
         );
-        if let Kind::Real { unit, nominal, .. } = &mut variable.kind
-            && unit.is_some_and(|unit| unit.name == Unit::METRE.name)
-            && is_position
+        if let Kind::Real {
+            unit: Some(unit),
+            nominal,
+            ..
+        } = &mut variable.kind
+            && has_magnitude
+            && let Some((_, size)) = magnitudes.iter().find(|(name, _)| *name == unit.name)
+            && size.is_normal()
         {
-            *nominal = Some(size);
+            *nominal = Some(*size);
         }
     }
 }

@@ -288,11 +288,10 @@ impl Table {
     /// Adds the event indicators of passive forces.
     fn add_event_indicators(&mut self, mechanism: &Mechanism) {
         let indicators = dynamics::event_indicators(mechanism);
-        for (index, force) in indicators.into_iter().enumerate() {
-            let name = &mechanism.forces[force].name;
+        for (index, watched) in indicators.into_iter().enumerate() {
             self.add(
                 format!("event_indicator[{}]", index + 1),
-                format!("positive until `{name}` begins or ceases to hold, or what slides turns"),
+                watched,
                 Quantity::EventIndicator(index),
                 (Causality::EventIndicator, Variability::Continuous),
                 Kind::real(None, None),

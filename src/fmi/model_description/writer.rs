@@ -198,6 +198,9 @@ fn type_of(unit: Unit) -> Option<&'static str> {
         (Unit::RADIAN, "biela.Angle"),
         (Unit::RADIAN_PER_SECOND, "biela.AngularVelocity"),
         (Unit::RADIAN_PER_SECOND_SQUARED, "biela.AngularAcceleration"),
+        (Unit::NEWTON, "biela.Force"),
+        (Unit::NEWTON_METRE, "biela.Torque"),
+        (Unit::JOULE, "biela.Energy"),
     ];
     let mut types = types.into_iter();
     types
