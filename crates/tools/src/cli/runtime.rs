@@ -15,14 +15,6 @@ pub(super) struct FoundLibrary {
 }
 
 impl FoundLibrary {
-    /// Returns the place of the library, in words.
-    pub(super) fn place(&self) -> String {
-        self.path.as_ref().map_or_else(
-            || "in this program".to_owned(),
-            |path| path.display().to_string(),
-        )
-    }
-
     /// Returns the oldest version of glibc that the library runs with; `None` if it uses none.
     pub(super) fn glibc(&self) -> Option<String> {
         let version = glibc(&self.library.content);

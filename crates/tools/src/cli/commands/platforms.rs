@@ -61,7 +61,12 @@ pub(in crate::cli) fn rows(folder: Option<&Path>) -> Result<Vec<PlatformRow>, Er
             name: platform.name,
             system: platform.system,
             glibc: found.and_then(FoundLibrary::glibc),
-            library: found.map(FoundLibrary::place),
+            library: found.map(|found| {
+                found.path.as_ref().map_or_else(
+                    || "in this program".to_owned(),
+                    |path| path.display().to_string(),
+                )
+            }),
         }
     });
     Ok(rows.collect())
