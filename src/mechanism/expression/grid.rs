@@ -79,38 +79,29 @@ impl Grid {
         let [first, second, up] =
             (self.scale.each_ref()).map(|factor| factor.evaluate(parameter, zero));
         let [x, y] = arguments;
-        self.along(0, [x / first, y / second], [None; 2]) * up
+        let value = self.joined(0, x / first, &|first| {
+            self.joined(1, y / second, &|second| self.on(first, second))
+        });
+        value * up
     }
 
-    /// Returns the value where the pieces of the arguments before `axis` are chosen: joins the pieces that
-    /// the argument of `axis` may meet.
-    fn along<N: Number>(&self, axis: usize, x: [N; 2], pieces: [Option<Piece<N>>; 2]) -> N {
-        let [Some(first), Some(second)] = pieces else {
-            let is_first = pieces[0].is_none();
-            debug_assert_eq!(is_first, axis == 0, "one argument after the other");
-            let jump = if self.is_smooth { 3 } else { 1 };
-            let value = |piece: Piece<N>| {
-                let mut pieces = pieces;
-                pieces[axis] = Some(piece);
-                self.along(axis + 1, x, pieces)
+    /// Joins the values on the pieces that an argument may meet.
+    fn joined<N: Number>(&self, axis: usize, x: N, value: &dyn Fn(Piece<N>) -> N) -> N {
+        let inside = if self.is_smooth { 3 } else { 1 };
+        let at_ends = self.first_jump().unwrap_or(inside).min(inside);
+        let mut found: Option<(N, bool)> = None;
+        for piece in self.pieces(axis, x) {
+            let own = value(piece);
+            let all = match found {
+                Some((found, was_outside)) if was_outside == piece.is_outside => {
+                    found.joined(own, inside)
+                }
+                Some((found, _)) => found.joined(own, at_ends),
+                None => own,
             };
-            let found = self
-                .pieces(axis, x[axis])
-                .map(|piece| (value(piece), piece.is_outside));
-            let joined = found.reduce(|(found, was_outside), (value, is_outside)| {
-                let jump = if was_outside == is_outside {
-                    jump
-                } else {
-                    self.first_jump().unwrap_or(jump).min(jump)
-                };
-                (found.joined(value, jump), is_outside)
-            });
-            return joined.map_or_else(N::unknown, |(value, _)| value);
-        };
-        if self.ends == Ends::Zero && (first.is_outside || second.is_outside) {
-            return N::constant(0.0);
+            found = Some((all, piece.is_outside));
         }
-        self.on(first, second)
+        found.map_or_else(N::unknown, |(value, _)| value)
     }
 
     /// Returns the pieces that an argument may meet, in their order.
@@ -151,6 +142,9 @@ impl Grid {
     /// Returns the value on a piece of each argument: the polynomial of a cell at the border, and from
     /// there straight on.
     fn on<N: Number>(&self, first: Piece<N>, second: Piece<N>) -> N {
+        if self.ends == Ends::Zero && (first.is_outside || second.is_outside) {
+            return N::constant(0.0);
+        }
         let columns = self.abscissas[1].len();
         let corner = |i: usize, j: usize| {
             let point = (first.segment + i) * columns + second.segment + j;

@@ -190,7 +190,7 @@ impl Operation {
         stack: &mut [N],
         height: &mut usize,
         functions: &[Function],
-        values: &impl Values<N>,
+        values: &dyn Values<N>,
     ) {
         let first = *height - self.arity();
         let result = match self {
@@ -555,12 +555,24 @@ impl Expression {
 fn run<N: Number, const STACK: usize>(
     program: &[Operation],
     functions: &[Function],
-    values: &impl Values<N>,
+    values: &dyn Values<N>,
 ) -> N {
     let mut stack = [N::constant(0.0); STACK];
+    run_on(&mut stack, program, functions, values);
+    stack[0]
+}
+
+/// Runs a program on a stack, at whose bottom the operand is that it leaves.
+// With a type of its own for the values from outside, the library of an FMU would have a hundred of it.
+#[inline(never)]
+fn run_on<N: Number>(
+    stack: &mut [N],
+    program: &[Operation],
+    functions: &[Function],
+    values: &dyn Values<N>,
+) {
     let mut height = 0;
     for operation in program {
-        operation.apply(&mut stack, &mut height, functions, values);
+        operation.apply(stack, &mut height, functions, values);
     }
-    stack[0]
 }

@@ -115,7 +115,7 @@ impl PointFunction {
     /// derivatives.
     ///
     /// At a point the derivatives are those of the next piece.
-    pub(in crate::mechanism) fn evaluate<N: Number>(&self, knots: &impl Knots<N>, x: N) -> N {
+    pub(in crate::mechanism) fn evaluate<N: Number>(&self, knots: &dyn Knots<N>, x: N) -> N {
         if !x.is_single() || !knots.are_single() {
             return self.over(knots, x).unwrap_or_else(N::unknown);
         }
@@ -138,7 +138,7 @@ impl PointFunction {
     }
 
     /// Returns the value within the points.
-    fn between<N: Number>(&self, knots: &impl Knots<N>, x: N) -> N {
+    fn between<N: Number>(&self, knots: &dyn Knots<N>, x: N) -> N {
         let segment = knots.segment_of(x.real());
         let last = knots.count() - 1;
         // A step up to the last point is passed there.
@@ -149,7 +149,7 @@ impl PointFunction {
     }
 
     /// Returns the value before the first or after the last point.
-    fn beyond<N: Number>(&self, knots: &impl Knots<N>, point: usize, x: N) -> N {
+    fn beyond<N: Number>(&self, knots: &dyn Knots<N>, point: usize, x: N) -> N {
         let (from, value) = (knots.abscissa(point), knots.ordinate(point));
         match self.ends {
             Ends::Natural | Ends::Linear => {
@@ -165,7 +165,7 @@ impl PointFunction {
 
     /// Returns bounds over all pieces that `x` may meet; `None` where abscissas may not rise, or more than
     /// one period begins.
-    fn over<N: Number>(&self, knots: &impl Knots<N>, x: N) -> Option<N> {
+    fn over<N: Number>(&self, knots: &dyn Knots<N>, x: N) -> Option<N> {
         let last = knots.count() - 1;
         if !knots.rise() {
             return None;
@@ -198,7 +198,7 @@ impl PointFunction {
     }
 
     /// Returns bounds over the segments that `x` may meet.
-    fn inside<N: Number>(&self, knots: &impl Knots<N>, x: N) -> Option<N> {
+    fn inside<N: Number>(&self, knots: &dyn Knots<N>, x: N) -> Option<N> {
         let segments = knots.segments_in(x.range());
         let pieces = segments.filter_map(|k| self.interpolation.over(&knots.part(k), x));
         pieces.reduce(|found, piece| found.joined(piece, self.interpolation.first_jump()))

@@ -11,6 +11,7 @@ mod memory;
 mod table;
 mod times;
 
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::f64::consts::TAU;
 
 use biela::mechanism::Jet;
@@ -21,6 +22,7 @@ use yardstick::by_hand::four_bar;
 use yardstick::cases::Case;
 use yardstick::chain::{Chain, Kind};
 use yardstick::comparisons::{Comparison, comparisons, counted_cases, lifts, set_ups};
+use yardstick::free::{RUNS, Run};
 use yardstick::generated::{Ground, chain};
 use yardstick::instructions::Counter;
 use yardstick::motion::{Moving, Stepper, Sweep};
@@ -34,6 +36,8 @@ fn main() {
     let mut out = String::new();
     ratios(&mut out, counter.as_ref());
     without_yardstick(&mut out, counter.as_ref());
+    free_runs(&mut out);
+    libraries(&mut out);
     chains(&mut out);
     scissor_lifts(&mut out, counter.as_ref());
     set_up(&mut out);
@@ -118,6 +122,61 @@ fn without_yardstick(out: &mut String, counter: Option<&Counter>) {
         out,
         ["mechanism without yardstick", "instructions per step"],
         counted_cases().into_iter().map(row),
+    );
+}
+
+/// Whole runs of free motion.
+fn free_runs(out: &mut String) {
+    const REPEATS: usize = 5;
+    let row = |run: &Run| {
+        let costs = [(); REPEATS].map(|()| run.cost());
+        let quickest = costs.into_iter().min_by(|a, b| a.time.total_cmp(&b.time));
+        let cost = quickest.expect("it ran");
+        let events = match cost.events {
+            0 => String::new(),
+            events => format!("{events} ({} per second)", short(events as f64 / cost.time)),
+        };
+        [
+            run.what.to_owned(),
+            format!("{} ms", short(1e3 * cost.time)),
+            cost.evaluations.to_string(),
+            events,
+            format!("{:.0e} J", cost.energy_error.abs()),
+            run.published.to_owned(),
+        ]
+    };
+    table(
+        out,
+        [
+            "run at tolerance 1e-8",
+            "time",
+            "evaluations",
+            "events",
+            "error of the energy",
+            "published, on other machines",
+        ],
+        RUNS.iter().map(row),
+    );
+}
+
+/// Sizes of what an FMU and a page carry, as far as they are built.
+fn libraries(out: &mut String) {
+    let release = std::env::current_exe().expect("this program runs from a file");
+    let target = release.ancestors().nth(2).expect("it is in target/release");
+    let row = |(what, file): (&str, &str)| {
+        let size = std::fs::metadata(target.join(file)).ok();
+        let size = or_not_run(size, |size| format!("{:.2} MB", size.len() as f64 * 1e-6));
+        [what.to_owned(), size]
+    };
+    let library = format!("release/{DLL_PREFIX}biela_runtime{DLL_SUFFIX}");
+    table(
+        out,
+        ["built here", "size"],
+        [
+            ("library inside an FMU", library.as_str()),
+            ("solver of a page", "runtimes/page.wasm"),
+        ]
+        .map(row),
     );
 }
 
