@@ -14,7 +14,7 @@ use super::function::FUNCTIONS;
 use super::gaps::Gaps;
 use super::passive::{Passive, PassiveForces};
 use super::stages::Stages;
-use crate::mechanism::{Load, Mechanism};
+use crate::mechanism::{Force, Load, Mechanism, PassiveCause};
 
 /// Steps that are cut in a row before the end of the last one is taken for the instant: far more than
 /// the search takes.
@@ -201,32 +201,45 @@ impl Watch {
     }
 }
 
+/// Returns what the event indicators of a passive force watch, in words.
+fn cause_indicators(cause: &PassiveCause) -> [&'static str; FUNCTIONS] {
+    if cause.is_contact() {
+        [
+            "gap above the least value while nothing touches, then the push",
+            "gap below the largest value while nothing touches",
+        ]
+    } else {
+        [
+            "speed while friction slides, force above the least that sticks",
+            "force below the largest that sticks",
+        ]
+    }
+}
+
 /// Returns what each event indicator of a mechanism watches, in words; of a contact the least of its elements.
 pub fn event_indicators(mechanism: &Mechanism) -> Vec<String> {
     if !mechanism.has_freedoms() {
         return Vec::new();
     }
     let forces = mechanism.forces.iter();
-    let is_first = |index: &usize| mechanism.elements_with(*index).start == *index;
-    let firsts = forces.clone().enumerate().filter(|(index, _)| is_first(index));
-    let passive = firsts.flat_map(|(_, force)| {
-        let watched = match &force.load {
-            Load::Passive { cause, .. } if !cause.is_contact() => [
-                "speed while friction slides, force above the least that sticks",
-                "force below the largest that sticks",
-            ],
-            Load::Passive { .. } => [
-                "gap above the least value while nothing touches, then the push",
-                "gap below the largest value while nothing touches",
-            ],
-            load if load.law().is_some_and(|law| law.stop.is_some()) => [
-                "gap above the least value while nothing touches, then the force of spring and damper",
-                "gap below the largest value while nothing touches, then the depth",
-            ],
-            _ => return Vec::new(),
-        };
-        watched.map(|watched| format!("`{}`: {watched}", force.name)).to_vec()
+    let all = forces.clone().enumerate();
+    let first = all.filter(|(index, _)| mechanism.elements_with(*index).start == *index);
+    let watched = |[above, below]: [&str; FUNCTIONS], force: &Force| {
+        [above, below].map(|watched| format!("`{}`: {watched}", force.name))
+    };
+    let passive = first.clone().filter_map(|(_, force)| match &force.load {
+        Load::Passive { cause, .. } => Some(watched(cause_indicators(cause), force)),
+        _ => None,
     });
+    let elastic = first.filter(|(_, force)| force.load.law().is_some_and(|law| law.stop.is_some()));
+    let elastic = elastic.map(|(_, force)| {
+        let words = [
+            "gap above the least value while nothing touches, then the force of spring and damper",
+            "gap below the largest value while nothing touches, then the depth",
+        ];
+        watched(words, force)
+    });
+    let passive = passive.chain(elastic).flatten();
     let turns = forces.flat_map(|force| {
         let sides = ["above the point before", "below the point after"];
         let corners =

@@ -50,7 +50,7 @@ impl<'a> Rows<'a> {
                 }
             }
             let is_placed = |measure: &&Measure| {
-                !matches!(measure.coordinate.kind, CoordinateKind::Clearance(_))
+                !matches!(measure.coordinate.kind, CoordinateKind::Clearance(..))
             };
             for measure in mechanism.measures.iter().filter(is_placed) {
                 let unit = if measure.coordinate.kind.is_angle() {
