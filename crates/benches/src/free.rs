@@ -33,7 +33,7 @@ const STOPPED: usize = 10;
 /// A whole run of free motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
-    /// What moves.
+    /// Name of the moving thing, as a table says it.
     pub what: &'static str,
     text: fn() -> String,
     /// Time that passes \[s\], from one step of a host to the next.
@@ -43,7 +43,7 @@ pub struct Run {
     pub published: &'static str,
 }
 
-/// What a run took.
+/// Cost of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Cost {
     /// Time of the thread \[s\].

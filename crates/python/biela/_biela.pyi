@@ -94,8 +94,7 @@ class Mechanism:
         self,
         motions: _Motions,
         parameters: _Values,
-        swept: Sequence[tuple[str, Any]],
-        courses: Sequence[tuple[str, Sequence[Any]]],
+        swept: tuple[Sequence[tuple[str, Any]], Sequence[tuple[str, Sequence[Any]]]],
         variants: int,
         columns: Sequence[int],
     ) -> Sweep: ...
@@ -148,11 +147,9 @@ class Mechanism:
         self,
         motions: _Motions,
         parameters: _Values,
-        width: int | None,
-        transparent: bool,
         contents: tuple[bool, int, str | None, bool, bool, bool],
         bounds: Sequence[float | str | None],
-        path: str | None,
+        picture: tuple[str | None, int | None, bool],
     ) -> tuple[str, Sequence[int] | None, list[str]]: ...
     def convert(self, to: str, motions: _Motions, parameters: _Values) -> _Told: ...
     def page_of_report(self, motions: _Motions, parameters: _Values) -> _Told: ...

@@ -403,8 +403,10 @@ class Mechanism:
             raw = self._inner.sweep(
                 motions,
                 list(fixed.items()),
-                [(name, array[part]) for name, array in flat.items()],
-                [(name, [order[part].reshape(-1) for order in orders]) for name, orders in courses.items()],
+                (
+                    [(name, array[part]) for name, array in flat.items()],
+                    [(name, [order[part].reshape(-1) for order in orders]) for name, orders in courses.items()],
+                ),
                 part.stop - first,
                 indices,
             )
@@ -595,8 +597,8 @@ class Mechanism:
                     raise UsageError(f"{option} is of pictures: leave it out for a drawing in DXF")
         options = (bool(traces), poses, driver, bool(dimensions), bool(instant_centres), bool(forces))
         drawing, content, notes = self._inner.draw(
-            self._start(drive), given_values(parameters), width, bool(transparent), options,
-            bounds_of(between), file,
+            self._start(drive), given_values(parameters), options, bounds_of(between),
+            (file, width, bool(transparent)),
         )
         if file is not None:
             written(file, bytes(content))

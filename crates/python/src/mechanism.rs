@@ -29,6 +29,12 @@ use crate::scenario::{Drive, Home, Scenario, Value, parameter, parameters, take_
 use crate::sweep::{Quantity, Sweep, Variants};
 use crate::timing::FreeDriver;
 
+/// Values of parameters, and of motions and sizes of forces with their derivatives, by their names.
+type Swept = (Vec<(String, Vec<f64>)>, Vec<(String, [Vec<f64>; 3])>);
+
+/// File of a picture, its width in pixels, and whether its ground is transparent.
+type Picture = (Option<PathBuf>, Option<u32>, bool);
+
 /// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
 /// these are all.
 type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
@@ -250,14 +256,14 @@ impl Mechanism {
         py: Python<'_>,
         motions: Motions,
         parameters: Vec<(String, Value)>,
-        swept: Vec<(String, Vec<f64>)>,
-        courses: Vec<(String, [Vec<f64>; 3])>,
+        swept: Swept,
         variants: usize,
         columns: Vec<usize>,
     ) -> Result<Sweep, Failure> {
         let cores = Cores::of_process(py)?;
         apart(py, || {
             let (scenario, parameters) = self.set(motions, parameters)?;
+            let (swept, courses) = swept;
             let swept = swept.into_iter();
             let swept = swept.map(|(name, values)| Ok((self.quantity(&name)?, values)));
             let swept: Vec<_> = swept.collect::<Result<_, Failure>>()?;
@@ -433,13 +439,12 @@ impl Mechanism {
         py: Python<'_>,
         motions: Motions,
         parameters: Vec<(String, Value)>,
-        width: Option<u32>,
-        transparent: bool,
         contents: Contents,
         bounds: [Option<Value>; 2],
-        path: Option<PathBuf>,
+        picture: Picture,
     ) -> Result<DrawingRow, Failure> {
         let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
+        let (path, width, transparent) = picture;
         apart(py, || {
             let (scenario, parameters) = self.set(motions, parameters)?;
             let columns = self.all_columns().iter();

@@ -37,7 +37,7 @@ impl<'a> Rows<'a> {
         }
         if let Some(mechanism) = &self.editing.drawn.mechanism {
             for body in &mechanism.bodies {
-                // Of a plate the last side leads back.
+                // The last side of a plate leads back.
                 let count = body.markers.len();
                 let sides = if count > 2 {
                     count
