@@ -3,10 +3,10 @@
 use nalgebra::DMatrix;
 
 use super::error::Error;
+use super::free_state::FreeState;
 use super::gaps::GapWatch;
 use super::given::Given;
 use super::passive::{Passive, PassiveForces};
-use super::state::FreeState;
 use super::triangular::{ascend, descend};
 use super::turns::Turns;
 use super::watch::{Verdict, Watch};

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::balance::Equilibrium;
 use super::error::Error;
+use super::free_state::FreeState;
 use super::given::Given;
 use super::linear::StateSpace;
 use super::motion::FreeMotion;
-use super::state::FreeState;
 use super::told::Told;
 use crate::kinematics::{
     self, Blocked, Budget, Direction, ForceParts, Forces, Output, Path, Pose, Progress, Solution,

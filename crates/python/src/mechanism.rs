@@ -11,7 +11,7 @@ use biela::mechanism::{Diagnostic, DriverId, Mechanism as Model, Order, Paramete
 use biela_tools::cli::{self, ArchiveOptions};
 use biela_tools::drawing::{Diagram, Followed, ForcePlace, svg, usual_driver};
 use biela_tools::exchange::WorkshopDrawing;
-use biela_tools::page::{Place, edit};
+use biela_tools::page::{PosePart, edit};
 use pyo3::prelude::*;
 
 use crate::attempt::Attempt;
@@ -681,7 +681,7 @@ impl Mechanism {
         start: (&Pose, impl Fn(DriverId) -> Option<f64>),
     ) -> Result<String, Failure> {
         let text = self.source.text();
-        edit(text, &self.model, parameters, start, Place::Whole)
+        edit(text, &self.model, parameters, start, PosePart::Whole)
             .map_err(|error| Failure::File(error.to_string()))
     }
 

@@ -77,7 +77,7 @@ pub(crate) type Start = (DriverId, Order, f64);
 
 /// Place of what a call gives as arrays.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Place {
+pub(crate) enum ArrayPlace {
     /// Samples of a driver, by their index.
     Samples(usize),
     /// Sizes of an input of forces, by their index.
@@ -86,7 +86,7 @@ pub(crate) enum Place {
 
 impl Scenario {
     /// Returns the place of the arrays of a driver or an input of forces of this name, if it has some.
-    pub(crate) fn place(&self, name: &str) -> Option<Place> {
+    pub(crate) fn place(&self, name: &str) -> Option<ArrayPlace> {
         let driver = self.own.driver_id(name);
         let samples = self.samples.iter();
         let samples = samples.enumerate().find(|(_, s)| Some(s.driver) == driver);
@@ -96,8 +96,8 @@ impl Scenario {
             loads.position(|(place, _)| inputs[*place].name == name)
         };
         samples
-            .map(|(index, _)| Place::Samples(index))
-            .or_else(|| loads().map(Place::Loads))
+            .map(|(index, _)| ArrayPlace::Samples(index))
+            .or_else(|| loads().map(ArrayPlace::Loads))
     }
 
     /// Returns warnings of angles that look like degrees.

@@ -14,7 +14,7 @@ use crate::call::Interrupt;
 use crate::error::Failure;
 use crate::events::{EventColumns, event_columns};
 use crate::runner::{BATCH, Runner};
-use crate::scenario::{Place, Scenario, Start};
+use crate::scenario::{ArrayPlace, Scenario, Start};
 
 /// The rows of many variants.
 #[pyclass]
@@ -61,7 +61,7 @@ pub(crate) struct Variants<'a> {
     pub(crate) swept: &'a [(Quantity, Vec<f64>)],
     /// The arrays of drivers and inputs of forces that are swept: positions, velocities and accelerations,
     /// or sizes first, by variant, then by row.
-    pub(crate) courses: &'a [(Place, [Vec<f64>; 3])],
+    pub(crate) courses: &'a [(ArrayPlace, [Vec<f64>; 3])],
     pub(crate) count: usize,
     pub(crate) columns: &'a [Output],
 }
@@ -155,8 +155,10 @@ impl Variants<'_> {
                 return Err(Failure::Usage("drive: expected finite numbers".to_owned()));
             }
             match *place {
-                Place::Samples(index) => runner.scenario.samples[index].take(orders),
-                Place::Loads(index) => runner.scenario.loads[index].1.copy_from_slice(orders[0]),
+                ArrayPlace::Samples(index) => runner.scenario.samples[index].take(orders),
+                ArrayPlace::Loads(index) => {
+                    runner.scenario.loads[index].1.copy_from_slice(orders[0])
+                }
             }
         }
         runner.start(&parameters)?;

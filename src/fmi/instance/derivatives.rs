@@ -57,7 +57,7 @@ impl<M: Model> Instance<M> {
         unknowns: &[M::Quantity],
         directions: &[(M::Quantity, f64)],
     ) -> Result<Vec<f64>, Error> {
-        let phase = self.course.state.phase(self.interface);
+        let phase = self.lifecycle.state.phase(self.interface);
         let logger = &self.logger;
         self.model
             .directional_derivatives(unknowns, directions, phase, logger)
@@ -70,7 +70,7 @@ impl<M: Model> Instance<M> {
         value_references: &[u32],
         changes: &[f64],
     ) -> Result<Vec<(M::Quantity, f64)>, Error> {
-        let initializing = self.course.state == State::InitializationMode;
+        let initializing = self.lifecycle.state == State::InitializationMode;
         let (by_parameters, role) = match self.version {
             Version::Fmi2 => (
                 initializing,
@@ -94,7 +94,7 @@ impl<M: Model> Instance<M> {
 
     /// Returns the unknowns of derivatives.
     fn unknowns(&self, value_references: &[u32]) -> Result<Vec<M::Quantity>, Error> {
-        let initializing = self.course.state == State::InitializationMode;
+        let initializing = self.lifecycle.state == State::InitializationMode;
         let role = match self.version {
             Version::Fmi2 => {
                 "derivatives are taken of outputs, in initialization mode of calculated \
@@ -155,7 +155,7 @@ impl<M: Model> Instance<M> {
         self.allow(call)?;
         self.variable(value_reference)?;
         let initializing = matches!(
-            self.course.state,
+            self.lifecycle.state,
             State::Instantiated | State::InitializationMode
         );
         Ok(self.model.dependencies(value_reference, initializing))

@@ -38,7 +38,7 @@ impl<M: Model> Instance<M> {
         }
         self.commit(Call::EnterEventMode)?;
         self.model.update_discrete();
-        self.course.state = State::EventMode;
+        self.lifecycle.state = State::EventMode;
         Ok(())
     }
 
@@ -51,10 +51,10 @@ impl<M: Model> Instance<M> {
     pub fn new_discrete_states(&mut self) -> Result<EventResult, Error> {
         self.allow(Call::NewDiscreteStates)?;
         let is_hosted = self.interface == Interface::ModelExchange;
-        if self.course.terminated || !is_hosted || !self.states.is_empty() {
+        if self.lifecycle.terminated || !is_hosted || !self.states.is_empty() {
             self.commit(Call::NewDiscreteStates)?;
         }
-        let must_end = self.course.terminated;
+        let must_end = self.lifecycle.terminated;
         let changed = if is_hosted && !must_end {
             self.model.change_states(&self.logger)
         } else {
@@ -71,7 +71,7 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call.
     pub fn enter_continuous_time_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterContinuousTimeMode)?;
-        self.course.state = State::ContinuousTimeMode;
+        self.lifecycle.state = State::ContinuousTimeMode;
         Ok(())
     }
 
@@ -83,7 +83,7 @@ impl<M: Model> Instance<M> {
     pub fn completed_integrator_step(&mut self) -> Result<CompletedStep, Error> {
         self.allow(Call::CompletedIntegratorStep)?;
         self.commit(Call::CompletedIntegratorStep)?;
-        let must_end = self.course.terminated;
+        let must_end = self.lifecycle.terminated;
         Ok(CompletedStep {
             has_event: !must_end && self.model.wants_event(),
             must_end,
@@ -95,7 +95,7 @@ impl<M: Model> Instance<M> {
     fn commit(&mut self, call: Call) -> Result<(), Error> {
         let time = self.model.time();
         // An accepted point stays accepted at its events.
-        let h = time - self.course.last_successful_time;
+        let h = time - self.lifecycle.last_successful_time;
         if h > 0.0
             && let Some(stop) = self.passed_stop_time(time, h)
         {
@@ -103,11 +103,11 @@ impl<M: Model> Instance<M> {
                 message: format!("the time {time} s is beyond the stop time {stop} s"),
             });
         }
-        let phase = self.course.state.phase(self.interface);
+        let phase = self.lifecycle.state.phase(self.interface);
         match self.model.commit(phase, &self.logger) {
             Ok(()) => {
-                self.course.last_successful_time = self.model.time();
-                self.course.terminated = false;
+                self.lifecycle.last_successful_time = self.model.time();
+                self.lifecycle.terminated = false;
                 Ok(())
             }
             Err(Failure::Discarded(reason)) => {
@@ -117,7 +117,7 @@ impl<M: Model> Instance<M> {
                     Version::Fmi2 => self.logger.write(Status::Error, Category::Error, &message),
                     Version::Fmi3 => self.logger.warn(&message),
                 }
-                self.course.terminated = true;
+                self.lifecycle.terminated = true;
                 Ok(())
             }
             Err(failure) => Err(self.failed(call, failure)),

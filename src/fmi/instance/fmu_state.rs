@@ -18,13 +18,13 @@ pub struct FmuState<S> {
     guid: Arc<str>,
     version: Version,
     interface: Interface,
-    course: Course,
+    lifecycle: Lifecycle,
     model: S,
 }
 
 /// Everything apart from the model that decides how an instance goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Course {
+pub(super) struct Lifecycle {
     pub(super) state: State,
     pub(super) start_time: f64,
     pub(super) stop_time: Option<f64>,
@@ -40,8 +40,8 @@ pub(super) struct Course {
     pub(super) at_dead_point: bool,
 }
 
-impl Course {
-    /// Returns the course of an instance that starts at `time`.
+impl Lifecycle {
+    /// Returns the lifecycle of an instance that starts at `time`.
     pub(super) fn new(time: f64) -> Self {
         Self {
             state: State::Instantiated,
@@ -89,7 +89,7 @@ impl<M: Model> Instance<M> {
             guid: Arc::clone(&self.guid),
             version: self.version,
             interface: self.interface,
-            course: self.course,
+            lifecycle: self.lifecycle,
             model: self.model.save(),
         })
     }
@@ -102,12 +102,12 @@ impl<M: Model> Instance<M> {
     pub fn set_fmu_state(&mut self, state: &FmuState<M::State>) -> Result<(), Error> {
         self.allow(Call::SetFMUstate)?;
         self.check_origin(state)?;
-        let now = state.course.state;
+        let now = state.lifecycle.state;
         if now == State::EventMode && !self.has_event_mode() {
             return Err(Error::FmuState(StateError::EventMode));
         }
         self.model.restore(&state.model);
-        self.course = state.course;
+        self.lifecycle = state.lifecycle;
         self.state_held = true;
         self.log_event(|model| format!("FMU state set: {now} at t = {} s", model.time()));
         Ok(())
@@ -157,7 +157,7 @@ impl<M: Model> Instance<M> {
         serialized::read(&self.guid, bytes, |reader| Self::visit(&mut state, reader))?;
         self.check_origin(&state)?;
         // No instance ever gets into `stepCanceled`.
-        let now = state.course.state;
+        let now = state.lifecycle.state;
         if !is_allowed(self.allowed, Call::GetFMUstate, now) || now == State::StepCanceled {
             return Err(Error::FmuState(StateError::Impossible {
                 why: format!("it is in state {now}"),
@@ -195,7 +195,7 @@ impl<M: Model> Instance<M> {
     fn visit(state: &mut FmuState<M::State>, codec: &mut impl Codec) -> Result<(), Unreadable> {
         codec.one_of(&mut state.version, &Version::ALL)?;
         codec.one_of(&mut state.interface, &Interface::ALL)?;
-        state.course.visit(codec)?;
+        state.lifecycle.visit(codec)?;
         M::visit(&mut state.model, codec)
     }
 }

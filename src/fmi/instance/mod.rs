@@ -38,7 +38,7 @@ use super::model::{Groups, Model};
 use super::state::{Allowed, Call, Interface, Phase, State, Version, allowed, is_allowed};
 use super::status::Status;
 use super::variable::{Variable, derivatives, event_indicators, states};
-use fmu_state::Course;
+use fmu_state::Lifecycle;
 use step_mode::PendingStep;
 use values::{Request, groups_of, is_continuous_input};
 
@@ -75,7 +75,7 @@ pub struct Instance<M: Model> {
     pending_step: Option<PendingStep>,
     logger: Logger,
     /// Everything that an FMU state saves besides the model.
-    course: Course,
+    lifecycle: Lifecycle,
     /// Whether the host holds an FMU state of the last communication point.
     state_held: bool,
 }
@@ -135,7 +135,7 @@ impl<M: Model> Instance<M> {
             intermediate: Box::default(),
             pending_step: None,
             logger: Logger::new(sink, logging_on, version),
-            course: Course::new(model.time()),
+            lifecycle: Lifecycle::new(model.time()),
             state_held: false,
             model,
         }
@@ -162,7 +162,7 @@ impl<M: Model> Instance<M> {
     /// Returns the present state.
     #[must_use]
     pub fn state(&self) -> State {
-        self.course.state
+        self.lifecycle.state
     }
 
     /// Returns the version of the standard that the instance follows.
@@ -184,9 +184,9 @@ impl<M: Model> Instance<M> {
                 _ => Category::Error,
             };
             self.logger.write(status, category, &message);
-            if status == Status::Error && self.course.state != State::Fatal {
+            if status == Status::Error && self.lifecycle.state != State::Fatal {
                 self.abandon_step();
-                self.course.state = State::Terminated;
+                self.lifecycle.state = State::Terminated;
             }
             return status;
         }
@@ -238,7 +238,7 @@ impl<M: Model> Instance<M> {
 
     /// Marks the instance as unusable after a caught defect, and logs the defect.
     pub fn mark_fatal(&mut self, message: &str) {
-        self.course.state = State::Fatal;
+        self.lifecycle.state = State::Fatal;
         self.logger.write(Status::Fatal, Category::Fatal, message);
     }
 
@@ -249,7 +249,7 @@ impl<M: Model> Instance<M> {
     /// [`Error::State`] if another state does, [`Error::Interface`] if none does.
     #[inline]
     pub fn allow(&self, call: Call) -> Result<(), Error> {
-        if is_allowed(self.allowed, call, self.course.state) {
+        if is_allowed(self.allowed, call, self.lifecycle.state) {
             Ok(())
         } else {
             Err(self.not_allowed(call))
@@ -258,7 +258,7 @@ impl<M: Model> Instance<M> {
 
     #[cold]
     fn not_allowed(&self, call: Call) -> Error {
-        let (version, interface, state) = (self.version, self.interface, self.course.state);
+        let (version, interface, state) = (self.version, self.interface, self.lifecycle.state);
         let allowed_in = |interface| call.allowed_in(version, interface);
         let allowed = allowed_in(interface);
         let is_known = Interface::ALL
@@ -318,9 +318,9 @@ impl<M: Model> Instance<M> {
             }
         }
         self.model.set_time(start);
-        self.course.last_successful_time = start;
-        self.course.start_time = start;
-        self.course.stop_time = stop;
+        self.lifecycle.last_successful_time = start;
+        self.lifecycle.start_time = start;
+        self.lifecycle.stop_time = stop;
         Ok(())
     }
 
@@ -331,7 +331,7 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call.
     pub fn enter_initialization_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterInitializationMode)?;
-        self.course.state = State::InitializationMode;
+        self.lifecycle.state = State::InitializationMode;
         Ok(())
     }
 
@@ -347,7 +347,7 @@ impl<M: Model> Instance<M> {
     ) -> Result<(), Error> {
         self.allow(Call::EnterInitializationMode)?;
         self.set_experiment(start, stop)?;
-        self.course.state = State::InitializationMode;
+        self.lifecycle.state = State::InitializationMode;
         Ok(())
     }
 
@@ -361,12 +361,12 @@ impl<M: Model> Instance<M> {
         self.allow(Call::ExitInitializationMode)?;
         if let Err(failure) = self.model.commit(Phase::Initialization, &self.logger) {
             if self.version == Version::Fmi2 {
-                self.course.state = State::Error;
+                self.lifecycle.state = State::Error;
             }
             return Err(self.failed(Call::ExitInitializationMode, failure));
         }
         self.model.update_discrete();
-        self.course.state = match (self.interface, self.version) {
+        self.lifecycle.state = match (self.interface, self.version) {
             (Interface::ModelExchange, _) => State::EventMode,
             (Interface::CoSimulation, Version::Fmi2) => State::StepComplete,
             (Interface::CoSimulation, Version::Fmi3) if self.co_simulation.event_mode_used => {
@@ -374,7 +374,7 @@ impl<M: Model> Instance<M> {
             }
             (Interface::CoSimulation, Version::Fmi3) => State::StepMode,
         };
-        self.course.last_successful_time = self.model.time();
+        self.lifecycle.last_successful_time = self.model.time();
         self.log_event(|model| format!("initialized at t = {} s", model.time()));
         Ok(())
     }
@@ -386,7 +386,7 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call.
     pub fn terminate(&mut self) -> Result<(), Error> {
         self.allow(Call::Terminate)?;
-        let phase = self.course.state.phase(self.interface);
+        let phase = self.lifecycle.state.phase(self.interface);
         let is_exchange = self.interface == Interface::ModelExchange && phase == Phase::Running;
         // The values of the final time are those of the inputs set last.
         if (is_exchange || phase == Phase::Event)
@@ -394,7 +394,7 @@ impl<M: Model> Instance<M> {
         {
             self.logger.warn(&failure.to_string());
         }
-        self.course.state = State::Terminated;
+        self.lifecycle.state = State::Terminated;
         self.log_event(|_| "terminated".to_owned());
         Ok(())
     }
@@ -407,7 +407,7 @@ impl<M: Model> Instance<M> {
     pub fn reset(&mut self) -> Result<(), Error> {
         self.allow(Call::Reset)?;
         self.model.reset();
-        self.course = Course::new(self.model.time());
+        self.lifecycle = Lifecycle::new(self.model.time());
         self.state_held = false;
         self.logger.begin_run();
         self.log_event(|_| "reset".to_owned());

@@ -104,8 +104,8 @@ impl<M: Model> Instance<M> {
             let why = "the host does not use event mode in this instance";
             return Err(Error::NotProvided { why });
         }
-        self.course.set_since_step = false;
-        self.course.state = State::EventMode;
+        self.lifecycle.set_since_step = false;
+        self.lifecycle.state = State::EventMode;
         Ok(())
     }
 
@@ -119,7 +119,7 @@ impl<M: Model> Instance<M> {
         self.model
             .commit(Phase::Event, &self.logger)
             .map_err(|failure| self.failed(Call::EnterStepMode, failure))?;
-        self.course.state = State::StepMode;
+        self.lifecycle.state = State::StepMode;
         Ok(())
     }
 
@@ -142,7 +142,7 @@ impl<M: Model> Instance<M> {
                 end,
                 stop: end,
                 points: 0,
-                values_set: self.course.set_since_step,
+                values_set: self.lifecycle.set_since_step,
             });
             return self.next_part();
         }
@@ -163,7 +163,7 @@ impl<M: Model> Instance<M> {
         let Some(step) = self.pending_step.as_mut() else {
             return Err(Error::StepAborted);
         };
-        self.course.state = State::StepMode;
+        self.lifecycle.state = State::StepMode;
         if let Some(time) = early_return
             && self.co_simulation.early_return_allowed
         {
@@ -212,8 +212,8 @@ impl<M: Model> Instance<M> {
                 return self.step_failed(start, size, failure);
             }
             if target < stop || !early {
-                self.course.set_since_step = false;
-                self.course.state = State::IntermediateUpdateMode;
+                self.lifecycle.set_since_step = false;
+                self.lifecycle.state = State::IntermediateUpdateMode;
                 return Ok(StepProgress::Intermediate {
                     time: target,
                     can_return_early: self.co_simulation.early_return_allowed,
@@ -240,14 +240,14 @@ impl<M: Model> Instance<M> {
 
     /// Ends a step that has reached its end, or the time at which the host wanted it to end.
     fn step_ended(&mut self, early_return: bool) -> StepOutcome {
-        self.course.set_since_step = false;
-        self.course.at_dead_point = false;
-        self.course.last_successful_time = self.model.time();
+        self.lifecycle.set_since_step = false;
+        self.lifecycle.at_dead_point = false;
+        self.lifecycle.last_successful_time = self.model.time();
         StepOutcome {
             event_handling_needed: false,
             terminate_simulation: false,
             early_return,
-            last_successful_time: self.course.last_successful_time,
+            last_successful_time: self.lifecycle.last_successful_time,
         }
     }
 
@@ -278,15 +278,15 @@ impl<M: Model> Instance<M> {
         self.model.meet_dead_point();
         let mut time = self.model.time();
         let progressed = self.has_progressed(start, h);
-        let was_at_dead_point = std::mem::replace(&mut self.course.at_dead_point, true);
+        let was_at_dead_point = std::mem::replace(&mut self.lifecycle.at_dead_point, true);
         if was_at_dead_point && !progressed {
             // The pose went the rest of its way to the same dead point.
             time = start;
         }
         let event_mode_used = self.co_simulation.event_mode_used;
         self.logger.warn(&format!("fmi3DoStep: {reason}"));
-        self.course.set_since_step = false;
-        self.course.last_successful_time = time;
+        self.lifecycle.set_since_step = false;
+        self.lifecycle.last_successful_time = time;
         Ok(StepProgress::Done(StepOutcome {
             event_handling_needed: event_mode_used,
             terminate_simulation: !event_mode_used || was_at_dead_point && !progressed,
@@ -299,7 +299,7 @@ impl<M: Model> Instance<M> {
     pub(super) fn abandon_step(&mut self) {
         if let Some(step) = self.pending_step.take() {
             self.model.abandon_step();
-            self.course.set_since_step = step.values_set;
+            self.lifecycle.set_since_step = step.values_set;
         }
     }
 
@@ -319,12 +319,12 @@ impl<M: Model> Instance<M> {
         if value_references.is_empty() {
             return;
         }
-        match self.course.state {
-            State::IntermediateUpdateMode if !self.course.set_since_step => {
-                self.course.set_since_step = true;
+        match self.lifecycle.state {
+            State::IntermediateUpdateMode if !self.lifecycle.set_since_step => {
+                self.lifecycle.set_since_step = true;
                 self.model.split_step(&self.logger);
             }
-            State::StepMode => self.course.set_since_step = true,
+            State::StepMode => self.lifecycle.set_since_step = true,
             _ => {}
         }
     }
@@ -333,7 +333,7 @@ impl<M: Model> Instance<M> {
     /// with start values, in step mode computed ones only if nothing was set since the last step,
     /// in intermediate update the required ones, before any is set.
     pub(super) fn check_readable(&self, value_references: &[u32]) -> Result<(), Error> {
-        match self.course.state {
+        match self.lifecycle.state {
             State::Instantiated => {
                 let has_start = |c| {
                     matches!(
@@ -350,7 +350,7 @@ impl<M: Model> Instance<M> {
                     |name| Error::NoStart { name },
                 )
             }
-            State::StepMode if self.course.set_since_step => {
+            State::StepMode if self.lifecycle.set_since_step => {
                 let is_computed = |c: Causality| {
                     c.is_output()
                         || matches!(
@@ -363,7 +363,7 @@ impl<M: Model> Instance<M> {
                 })
             }
             State::IntermediateUpdateMode
-                if self.course.set_since_step && !value_references.is_empty() =>
+                if self.lifecycle.set_since_step && !value_references.is_empty() =>
             {
                 Err(Error::ReadAfterSet)
             }

@@ -31,7 +31,7 @@ impl<M: Model> Instance<M> {
         self.check_step(communication_point, h)?;
         let end = communication_point + h;
         let stepped = self.model.step(h, end, false, &self.logger);
-        self.course.last_successful_time = self.model.time();
+        self.lifecycle.last_successful_time = self.model.time();
         match stepped {
             Ok(()) => {
                 self.state_held = false;
@@ -47,9 +47,9 @@ impl<M: Model> Instance<M> {
     fn fail_step(&mut self, communication_point: f64, h: f64, failure: Failure) -> Error {
         if let Failure::Discarded(_) = failure {
             let progressed = self.has_progressed(communication_point, h);
-            self.course.state = State::StepFailed;
-            self.course.discarded = true;
-            self.course.terminated = !(progressed && self.state_held);
+            self.lifecycle.state = State::StepFailed;
+            self.lifecycle.discarded = true;
+            self.lifecycle.terminated = !(progressed && self.state_held);
         }
         self.failed(Call::DoStep, failure)
     }
@@ -64,14 +64,14 @@ impl<M: Model> Instance<M> {
     #[inline(always)]
     pub(super) fn passed_stop_time(&self, time: f64, h: f64) -> Option<f64> {
         let passed = |stop: &f64| time > *stop && time - *stop > self.summed_rounding(time, h);
-        self.course.stop_time.filter(passed)
+        self.lifecycle.stop_time.filter(passed)
     }
 
     /// Returns the rounding of the time of a host that adds up steps of size `h`: up to half a rounding
     /// of the time per step. A step that passes the stop time by half of itself passes it anyway.
     #[cold]
     fn summed_rounding(&self, time: f64, h: f64) -> f64 {
-        let steps = (time - self.course.start_time) / h;
+        let steps = (time - self.lifecycle.start_time) / h;
         let summed = 0.5 * f64::EPSILON * time.abs() * steps;
         time_rounding(time, h).max(summed.min(0.5 * h))
     }
@@ -105,7 +105,7 @@ impl<M: Model> Instance<M> {
     /// `fmi2GetStatus` of `fmi2DoStepStatus`: status of the last step.
     #[must_use]
     pub fn step_status(&self) -> Status {
-        if self.course.discarded {
+        if self.lifecycle.discarded {
             Status::Discard
         } else {
             Status::Ok
@@ -115,13 +115,13 @@ impl<M: Model> Instance<M> {
     /// `fmi2GetRealStatus` of `fmi2LastSuccessfulTime` \[s\]: the last time that the model reached.
     #[must_use]
     pub fn last_successful_time(&self) -> f64 {
-        self.course.last_successful_time
+        self.lifecycle.last_successful_time
     }
 
     /// `fmi2GetBooleanStatus` of `fmi2Terminated`: whether the simulation must end. False after a
     /// discarded step that a host with an FMU state of its start can repeat with a smaller size.
     #[must_use]
     pub fn is_terminated(&self) -> bool {
-        self.course.terminated
+        self.lifecycle.terminated
     }
 }

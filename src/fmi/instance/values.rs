@@ -42,7 +42,7 @@ impl<M: Model> Instance<M> {
     #[inline(always)]
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
-        if self.course.state == State::IntermediateUpdateMode {
+        if self.lifecycle.state == State::IntermediateUpdateMode {
             self.check_intermediate(value_references)?;
         }
         for (&value_reference, &value) in value_references.iter().zip(values) {
@@ -286,7 +286,7 @@ impl<M: Model> Instance<M> {
 
     #[inline(always)]
     pub(super) fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
-        let phase = self.course.state.phase(self.interface);
+        let phase = self.lifecycle.state.phase(self.interface);
         self.model
             .refresh(groups, phase, &self.logger)
             .map_err(|failure| self.failed(call, failure))
@@ -327,13 +327,13 @@ impl<M: Model> Instance<M> {
             return Err(self.wrong_type(variable, expected));
         }
         let initializing = matches!(
-            self.course.state,
+            self.lifecycle.state,
             State::Instantiated | State::InitializationMode
         );
         let why = match variable.causality {
             Causality::Input
                 if variable.variability == Variability::Continuous
-                    || self.course.state != State::ContinuousTimeMode =>
+                    || self.lifecycle.state != State::ContinuousTimeMode =>
             {
                 return Ok(variable);
             }
@@ -344,7 +344,7 @@ impl<M: Model> Instance<M> {
             Causality::Parameter if variable.variability == Variability::Fixed => {
                 "a fixed parameter, and initialization has ended"
             }
-            Causality::Parameter if self.course.state == State::ContinuousTimeMode => {
+            Causality::Parameter if self.lifecycle.state == State::ContinuousTimeMode => {
                 "a tunable parameter, which changes in event mode"
             }
             Causality::Parameter => return Ok(variable),

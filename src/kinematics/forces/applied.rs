@@ -37,7 +37,7 @@ pub(super) struct Seen {
 /// One force.
 #[derive(Debug)]
 pub(super) struct AppliedForce {
-    pub(super) place: Place,
+    pub(super) place: ActsAt,
     /// Index of its first load among all [`loads`](super::Forces::loads), if it has no law.
     pub(super) input: Option<usize>,
     /// Whether functions have corners or jumps in its size.
@@ -48,7 +48,7 @@ pub(super) struct AppliedForce {
 
 /// Place of a force.
 #[derive(Debug)]
-pub(super) enum Place {
+pub(super) enum ActsAt {
     /// Along a coordinate.
     Coordinate(Arc<dyn Constraint>),
     /// At a marker, along the axes of another one or of ground.
@@ -204,9 +204,9 @@ impl AppliedForces {
         let list = forces.map(|(force, input)| AppliedForce {
             place: match &force.load {
                 Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. } => {
-                    Place::Coordinate(system.relation_of(&force.load, coordinate))
+                    ActsAt::Coordinate(system.relation_of(&force.load, coordinate))
                 }
-                Load::Marker { marker, axes, .. } => Place::Marker(*marker, *axes),
+                Load::Marker { marker, axes, .. } => ActsAt::Marker(*marker, *axes),
             },
             input,
             has_corners: force.load.moving_expressions().any(Expression::has_corners),
@@ -262,7 +262,7 @@ impl AppliedForces {
                 })
             };
             match (&applied.place, &definition.load) {
-                (Place::Coordinate(relation), Load::Coordinate { .. } | Load::Passive { .. }) => {
+                (ActsAt::Coordinate(relation), Load::Coordinate { .. } | Load::Passive { .. }) => {
                     let law = definition.load.law();
                     let value = relation.value(at);
                     if is_at_zero(&definition.load, at)
@@ -287,7 +287,7 @@ impl AppliedForces {
                         demand[column] -= force * partial;
                     }
                 }
-                (Place::Marker(marker, axes), Load::Marker { law, .. }) => {
+                (ActsAt::Marker(marker, axes), Load::Marker { law, .. }) => {
                     *size = applied.at_marker(law.as_ref(), around);
                     if applied.has_corners {
                         let none = [f64::NAN; 2];

@@ -1,6 +1,6 @@
 //! The rounding error of efforts.
 
-use super::applied::{Place, on_body};
+use super::applied::{ActsAt, on_body};
 use super::inertial::by_body;
 use super::solve::Forces;
 use crate::kinematics::constraint::Gradient;
@@ -31,14 +31,14 @@ impl Forces {
         let mut gradient = Gradient::new();
         for (applied, size) in self.applied.list.iter().zip(&self.results.sizes) {
             match &applied.place {
-                Place::Coordinate(relation) => {
+                ActsAt::Coordinate(relation) => {
                     gradient.clear();
                     relation.gradient(&state.at, &mut gradient);
                     for (column, partial) in gradient.entries() {
                         add(column, size[0] * partial);
                     }
                 }
-                Place::Marker(marker, axes) => {
+                ActsAt::Marker(marker, axes) => {
                     if let Some((body, force)) = on_body(*size, &state.at, *marker, *axes) {
                         (0..3).for_each(|k| add(3 * body.index() + k, force[k]));
                     }

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::applied::{Circumstances, Place, about_origin, is_at_zero};
+use super::applied::{ActsAt, Circumstances, about_origin, is_at_zero};
 use super::inertial::Masses;
 use super::results::shares;
 use super::solve::{ForceParts, Forces, KnownMotion, Loads};
@@ -473,7 +473,7 @@ impl Forces {
         for (applied, definition) in self.applied.list.iter().zip(&self.mechanism.forces) {
             match (&applied.place, &definition.load) {
                 (
-                    Place::Coordinate(_),
+                    ActsAt::Coordinate(_),
                     Load::Coordinate {
                         coordinate,
                         law: Some(law),
@@ -502,7 +502,7 @@ impl Forces {
                     }
                     sizes.push([Dual::new(0.0, [f64::NAN]), zero, zero]);
                 }
-                (Place::Coordinate(relation), Load::Coordinate { .. } | Load::Passive { .. }) => {
+                (ActsAt::Coordinate(relation), Load::Coordinate { .. } | Load::Passive { .. }) => {
                     let law = definition.load.law();
                     let value = relation.along(&at);
                     let coordinate = [value.value, value.first()];
@@ -513,7 +513,7 @@ impl Forces {
                     }
                     sizes.push([force, zero, zero]);
                 }
-                (Place::Marker(marker, axes), Load::Marker { law, .. }) => {
+                (ActsAt::Marker(marker, axes), Load::Marker { law, .. }) => {
                     let size = applied.at_marker(law.as_ref(), &around);
                     let axis = axes.map_or([Dual::constant(1.0), zero], |axes| {
                         at.marker(axes).axis.map(|component| component.value)

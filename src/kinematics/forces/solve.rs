@@ -13,7 +13,7 @@ use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::plan::{BlockState, JacobianFactors};
-use crate::kinematics::singular::{Kind, NearPoint, Place, near_point};
+use crate::kinematics::singular::{Kind, MotionPoint, NearPoint, near_point};
 use crate::kinematics::state::{Pose, SINGULAR_HERE, State};
 use crate::mechanism::{
     BeyondPoints, Corner, Driver, DriverId, ForceQuantity, Indeterminate, Jet, Load, Mechanism,
@@ -553,7 +553,7 @@ impl<'a> Loads<'a> {
     }
 
     /// Returns the motion at a place.
-    pub(super) fn motion<'b>(&'b mut self, place: &Place<'b>) -> KnownMotion<'b> {
+    pub(super) fn motion<'b>(&'b mut self, place: &MotionPoint<'b>) -> KnownMotion<'b> {
         for (there, here) in self.there.iter_mut().zip(self.here) {
             *there = here + place.drift * self.change;
         }

@@ -62,7 +62,7 @@ pub(in crate::kinematics) struct NearPoint {
 }
 
 /// One place of the motion, at which the state is.
-pub(in crate::kinematics) struct Place<'a> {
+pub(in crate::kinematics) struct MotionPoint<'a> {
     /// Rates of q.
     pub(in crate::kinematics) rates: &'a Rates,
     /// Rates of the drivers.
@@ -181,7 +181,7 @@ impl NearPoint {
         mut evaluate: impl FnMut(
             &mut CompiledMechanism,
             &mut State,
-            &Place<'_>,
+            &MotionPoint<'_>,
             &mut Vec<f64>,
         ) -> Result<(), Error>,
     ) -> Option<Vec<f64>> {
@@ -217,7 +217,7 @@ impl NearPoint {
         evaluate: &mut impl FnMut(
             &mut CompiledMechanism,
             &mut State,
-            &Place<'_>,
+            &MotionPoint<'_>,
             &mut Vec<f64>,
         ) -> Result<(), Error>,
     ) -> Option<Vec<Interpolated>> {
@@ -331,7 +331,7 @@ impl NearPoint {
         evaluate: &mut impl FnMut(
             &mut CompiledMechanism,
             &mut State,
-            &Place<'_>,
+            &MotionPoint<'_>,
             &mut Vec<f64>,
         ) -> Result<(), Error>,
     ) -> Option<Vec<Vec<f64>>> {
@@ -356,7 +356,7 @@ impl NearPoint {
                 move_there(compiled, state)?;
                 let jet = |driver: DriverId| driver_rates[driver.index()];
                 state.solve_rates(compiled, jet, &mut rates).ok()?;
-                let place = Place {
+                let place = MotionPoint {
                     rates: &rates,
                     driver_rates: &driver_rates,
                     drift: unknown * (place - self.place) * WAY,

@@ -44,6 +44,6 @@ pub use obstacle::SingularPoint;
 
 pub(super) use approach::approach;
 pub(super) use crossings::{CROSSING_END, admits_crossings, describe_crossing, leave_crossings};
-pub(super) use limit::{Kind, NearPoint, Place, near_point};
+pub(super) use limit::{Kind, MotionPoint, NearPoint, near_point};
 pub(super) use near::NEAR;
 pub(super) use obstacle::{DriverLimit, FruitlessSearches, find_end, look_ahead, settle};

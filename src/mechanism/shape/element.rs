@@ -114,7 +114,7 @@ impl Shape {
                 }
             }
             ShapeForm::Outline { .. } | ShapeForm::Wall { .. } => {
-                let runs = self.with_chain(given, |chain| Course::of(chain).runs());
+                let runs = self.with_chain(given, |chain| OutlineTurns::of(chain).runs());
                 runs.expect("an outline and a wall have a chain")
             }
         }
@@ -122,7 +122,7 @@ impl Shape {
 }
 
 /// The turns of an outline along its way.
-struct Course {
+struct OutlineTurns {
     is_closed: bool,
     /// The turn at each corner, and its angle, positive where the corner stands out.
     corners: Vec<(Turn, f64)>,
@@ -130,7 +130,7 @@ struct Course {
     edges: Vec<f64>,
 }
 
-impl Course {
+impl OutlineTurns {
     fn of(chain: &Chain<'_, f64>) -> Self {
         let corners = (0..chain.count).map(|k| {
             if !chain.is_closed && (k == 0 || k + 1 == chain.count) {

@@ -15,8 +15,8 @@
 //! | `render` | a diagnostic beside the lines of its file |
 //! | `library` | commands as functions, for programs without a command line |
 
+mod at_rest;
 mod commands;
-mod free;
 mod given;
 mod library;
 mod motion;

@@ -25,13 +25,13 @@ mod dxf;
 mod error;
 mod freedom;
 mod linkage2;
-mod names;
 mod note;
 mod others;
 mod pins;
 mod pmks;
 mod pylinkage;
 mod sketch;
+mod source_names;
 mod ssp;
 mod text;
 

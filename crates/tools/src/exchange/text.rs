@@ -6,7 +6,7 @@ use super::draft::{
     BodyRef, Coordinate, Draft, Driver, DriverSource, ForceKind, GROUND, JointKind, LengthUnit,
     PointRef, Stop, Wheels,
 };
-use super::names::Names;
+use super::source_names::Names;
 use crate::write::{degrees, in_unit};
 use biela::mechanism::{is_identifier, shortest, similar_identifier};
 

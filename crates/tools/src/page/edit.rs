@@ -19,7 +19,7 @@ pub enum EditError {
 
 /// The part of a pose that goes into the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum PosePart {
     /// Nothing: the file keeps its start values and estimates.
     Keep,
     /// The start values of freedoms and of the drivers that are inputs.
@@ -39,7 +39,7 @@ pub fn edit(
     mechanism: &Mechanism,
     names: &[String],
     (pose, velocity): (&Pose, impl Fn(DriverId) -> Option<f64>),
-    place: Place,
+    place: PosePart,
 ) -> Result<String, EditError> {
     let mut text = TomlText::new(text)?;
     for (parameter, value) in mechanism.parameters.iter().zip(&pose.parameters) {
@@ -47,7 +47,7 @@ pub fn edit(
             set_parameter(&mut text, &parameter.name, *value)?;
         }
     }
-    if place != Place::Keep {
+    if place != PosePart::Keep {
         let drivers = mechanism.drivers.iter().zip(&pose.drivers).enumerate();
         for (index, (driver, value)) in drivers {
             let (section, velocity) = match driver.source {
@@ -61,7 +61,7 @@ pub fn edit(
             }
         }
     }
-    if place == Place::Whole {
+    if place == PosePart::Whole {
         let size = largest_coordinate(&pose.q);
         for (body, q) in mechanism.bodies.iter().zip(pose.q.chunks_exact(3)) {
             let path = ["bodies", &*body.name, "estimate"];
@@ -137,7 +137,7 @@ mod tests {
             solver.assemble(&Path::new(&mechanism)).expect("it closes");
             let pose = solver.pose();
             let names = ["coupler_length".to_owned()];
-            let same = edit(&text, &mechanism, &names, (pose, |_| None), Place::Keep)
+            let same = edit(&text, &mechanism, &names, (pose, |_| None), PosePart::Keep)
                 .expect("its own text");
             assert_eq!(same, text);
         }

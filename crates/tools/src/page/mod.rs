@@ -35,7 +35,7 @@ mod description;
 mod edit;
 mod files;
 mod frame;
-mod free;
+mod free_motion;
 mod hand;
 mod held;
 mod host;
@@ -50,7 +50,7 @@ mod undo;
 mod values;
 
 pub use along::Over;
-pub use edit::{EditError, Place, change_values, edit};
+pub use edit::{EditError, PosePart, change_values, edit};
 pub use held::assembled;
 pub use host::Host;
 pub use outcome::{Obstacle, Outcome};

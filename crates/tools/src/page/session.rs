@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::edit::{EditError, Place, edit};
+use super::edit::{EditError, PosePart, edit};
 use super::held::assembled;
 use super::outcome::{Obstacle, Outcome};
 use super::ranges::{DriverRange, driver_ranges, start_rates};
@@ -419,7 +419,11 @@ impl Session {
     /// Those of [`edit`], which a file that was read does not have.
     pub fn text(&self) -> Result<String, EditError> {
         let moved = self.pose() != &self.home.now.pose;
-        let place = if moved { Place::Whole } else { Place::Keep };
+        let place = if moved {
+            PosePart::Whole
+        } else {
+            PosePart::Keep
+        };
         self.edited(place)
     }
 
@@ -429,10 +433,10 @@ impl Session {
     ///
     /// Those of [`edit`], which a file that was read does not have.
     pub fn text_with_parameters(&self) -> Result<String, EditError> {
-        self.edited(Place::Keep)
+        self.edited(PosePart::Keep)
     }
 
-    fn edited(&self, place: Place) -> Result<String, EditError> {
+    fn edited(&self, place: PosePart) -> Result<String, EditError> {
         let pose = self.own_pose();
         let parameters = self.mechanism().parameters.iter().zip(&pose.parameters);
         let changed =

@@ -25,7 +25,7 @@ mod four_bar;
 mod gesture;
 mod host;
 mod inspect;
-mod names;
+mod new_names;
 mod reference;
 mod request;
 mod sketch;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::check::{estimates, with_unit};
-use crate::cli::free::AtRest;
+use crate::cli::at_rest::AtRest;
 use crate::cli::given::conditions::Conditions;
 use crate::cli::results::output::print;
 use crate::cli::told::error::Error;

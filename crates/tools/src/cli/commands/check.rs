@@ -12,7 +12,7 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 use forces::Forces;
 
-use crate::cli::free::AtRest;
+use crate::cli::at_rest::AtRest;
 use crate::cli::given::input::warn_of_misfits;
 use crate::cli::given::settings::Settings;
 use crate::cli::given::signals::Signals;

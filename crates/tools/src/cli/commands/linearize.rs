@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::cli::free::AtRest;
+use crate::cli::at_rest::AtRest;
 use crate::cli::given::conditions::Conditions;
 use crate::cli::results::column::{self, Output};
 use crate::cli::results::output::write;

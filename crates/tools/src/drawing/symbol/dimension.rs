@@ -1,6 +1,6 @@
 //! Lengths of bodies, and of ground, between their joints, and offsets of guides.
 
-use super::joint_letter::{Place, are_one};
+use super::joint_letter::{JointPlace, are_one};
 use super::*;
 use biela::mechanism::{DisplayUnit, rounded, shown};
 
@@ -16,7 +16,7 @@ pub struct Dimension {
 }
 
 /// Composes the lengths of all bodies and of ground. Returns the note on their unit.
-pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> {
+pub(super) fn compose(composer: &mut Composer, places: &[JointPlace]) -> Vec<String> {
     let unit = composer.mechanism.length_display();
     let bodies = (0..composer.mechanism.bodies.len()).map(|body| Some(BodyId(body)));
     let mut lengths: Vec<Dimension> = Vec::new();
@@ -62,7 +62,7 @@ pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> 
 /// and this line as far as the point that slides; nothing if the line passes through the joint.
 fn offset(
     composer: &Composer,
-    places: &[Place],
+    places: &[JointPlace],
     [guide, sliding]: [Anchor; 2],
     aside: f64,
 ) -> Vec<Dimension> {

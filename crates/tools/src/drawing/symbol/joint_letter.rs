@@ -14,7 +14,7 @@ pub struct JointLetter {
 }
 
 /// A place that one or several joints hold together.
-pub(super) struct Place {
+pub(super) struct JointPlace {
     pub(super) name: String,
     /// The point on each body that has it, or on ground.
     pub(super) points: Vec<Anchor>,
@@ -28,8 +28,8 @@ const SHORT: usize = 3;
 /// Returns the places of the joints in the order of the file, then of the ends of cylinders. They
 /// have the joints' own names if each place has a short one, otherwise letters that no point of
 /// interest has.
-pub(super) fn places(composer: &Composer) -> Vec<Place> {
-    let mut places: Vec<Place> = Vec::new();
+pub(super) fn places(composer: &Composer) -> Vec<JointPlace> {
+    let mut places: Vec<JointPlace> = Vec::new();
     let anchor = |marker: MarkerId| composer.anchor(marker);
     let joints = composer.mechanism.joints.iter().flat_map(|joint| {
         let points = points_of(joint, anchor);
@@ -43,7 +43,7 @@ pub(super) fn places(composer: &Composer) -> Vec<Place> {
         points.map(|points| (&driver.name, points))
     });
     for (joint, points) in joints.chain(cylinders) {
-        let mut place = Place {
+        let mut place = JointPlace {
             name: String::new(),
             points,
             joints: vec![joint.clone()],
@@ -63,7 +63,7 @@ pub(super) fn places(composer: &Composer) -> Vec<Place> {
     let taken: Vec<String> = outputs
         .map(|m| point_name(composer.mechanism, *m))
         .collect();
-    let short = |place: &Place| {
+    let short = |place: &JointPlace| {
         let mut names = place.joints.iter();
         names.find(|name| name.len() <= SHORT).cloned()
     };
@@ -80,8 +80,8 @@ pub(super) fn places(composer: &Composer) -> Vec<Place> {
 }
 
 /// Composes the letters. Returns a key of letters that the file does not have.
-pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> {
-    let is_own = |place: &Place| place.joints.contains(&place.name);
+pub(super) fn compose(composer: &mut Composer, places: &[JointPlace]) -> Vec<String> {
+    let is_own = |place: &JointPlace| place.joints.contains(&place.name);
     for place in places {
         let is_named = composer.mechanism.outputs.markers.iter().any(|marker| {
             let point = composer.anchor(*marker);
@@ -140,7 +140,7 @@ fn letters() -> impl Iterator<Item = String> {
     })
 }
 
-impl Place {
+impl JointPlace {
     /// Returns whether a point of a body is this place.
     pub(super) fn has(&self, point: &Anchor) -> bool {
         self.points.iter().any(|own| are_one(own, point))

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::keys;
-use super::place::{Place, Plane, Vector, are_parallel, are_perpendicular};
+use super::spatial_frame::{Plane, SpatialFrame, Vector, are_parallel, are_perpendicular};
 use super::tree::{Node, Tree};
 use crate::exchange::error::Error;
 use crate::exchange::others::Others;
@@ -27,7 +27,7 @@ pub(super) struct Assembly {
 
 pub(super) struct Part {
     pub(super) name: String,
-    pub(super) place: Place,
+    pub(super) place: SpatialFrame,
     pub(super) mass: PartMass,
     /// Velocity of its origin.
     pub(super) velocity: Vector,
@@ -37,7 +37,7 @@ pub(super) struct Part {
 pub(super) struct PartMass {
     pub(super) mass: f64,
     pub(super) inertias: [f64; 3],
-    pub(super) place: Place,
+    pub(super) place: SpatialFrame,
 }
 
 #[derive(Clone)]
@@ -46,7 +46,7 @@ pub(super) struct Marker {
     pub(super) name: String,
     /// `None` on the assembly.
     pub(super) part: Option<usize>,
-    pub(super) place: Place,
+    pub(super) place: SpatialFrame,
     /// Whether it is the centre of mass.
     pub(super) is_centre: bool,
 }
@@ -114,7 +114,7 @@ impl Assembly {
         let path = format!("/{}", assembly.name);
         let place = match root.child("Position3D") {
             Some(_) => read_place(root, "the assembly")?,
-            None => Place::ORIGIN,
+            None => SpatialFrame::ORIGIN,
         };
         assembly.read_markers(root, &path, None, &place)?;
         for part in root.required("Parts", "the assembly")?.children() {
@@ -212,7 +212,7 @@ impl Assembly {
         node: Node,
         path: &str,
         part: Option<usize>,
-        place: &Place,
+        place: &SpatialFrame,
     ) -> Result<(), Error> {
         for point in node.child("RefPoints").into_iter().flat_map(Node::children) {
             let place = place.then(&read_place(point, "a reference point")?);
@@ -413,7 +413,7 @@ impl Assembly {
                 best = Some((count, *axis));
             }
         }
-        let [x, y, z] = Place::ORIGIN.axes;
+        let [x, y, z] = SpatialFrame::ORIGIN.axes;
         let normal = match best {
             Some((_, axis)) => axis,
             None => {
@@ -439,7 +439,10 @@ impl Joint {
     }
 }
 
-fn read_place(node: Node, place: &str) -> Result<Place, Error> {
+fn read_place(node: Node, place: &str) -> Result<SpatialFrame, Error> {
     let at = node.numbers("Position3D", place)?;
-    Ok(Place::new(at, node.numbers("RotationMatrix", place)?))
+    Ok(SpatialFrame::new(
+        at,
+        node.numbers("RotationMatrix", place)?,
+    ))
 }

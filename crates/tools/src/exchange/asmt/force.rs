@@ -4,7 +4,7 @@ use super::Reader;
 use super::assembly::{ForceTorque, Marker, Part};
 use super::expression;
 use super::joint::DEPTH;
-use super::place::{Place, Vector, dot};
+use super::spatial_frame::{SpatialFrame, Vector, dot};
 use crate::exchange::draft::{Coordinate, Force, ForceKind, Freedom, GROUND, LengthUnit, PointRef};
 use crate::exchange::error::Error;
 use crate::exchange::freedom::undriven;
@@ -67,7 +67,7 @@ impl Reader<'_> {
             "J" => Some(&j),
             _ => Some(&i),
         };
-        let directions = along.map_or(Place::ORIGIN.axes, |marker| marker.place.axes);
+        let directions = along.map_or(SpatialFrame::ORIGIN.axes, |marker| marker.place.axes);
         // The two axes in the plane, and the third one's sense.
         let sides = directions.map(|axis| {
             let side = dot(axis, self.plane.normal);

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::Reader;
 use super::assembly::{Joint, Marker};
-use super::place::dot;
+use super::spatial_frame::dot;
 use crate::exchange::draft::{BodyRef, Draft, GROUND, Held, JointKind, PointRef, Wheels};
 use crate::exchange::error::Error;
 use crate::exchange::note::Note;

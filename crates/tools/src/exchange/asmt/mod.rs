@@ -19,7 +19,7 @@ mod force;
 mod joint;
 mod keys;
 mod motion;
-mod place;
+mod spatial_frame;
 mod tree;
 mod write;
 
@@ -29,7 +29,7 @@ use super::draft::{Body, BodyRef, Draft, GROUND, LengthUnit, Mass, Point, PointR
 use super::error::Error;
 use super::note::Note;
 use assembly::{Assembly, Part};
-use place::{Plane, dot};
+use spatial_frame::{Plane, dot};
 use tree::Tree;
 pub use write::AssemblyFile;
 

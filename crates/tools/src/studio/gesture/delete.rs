@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::names::named;
+use super::super::new_names::named;
 use super::super::reference::{Reference, references};
 use super::rename::path_of;
 use super::{Editing, Refusal};

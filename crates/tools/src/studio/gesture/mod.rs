@@ -63,7 +63,7 @@ mod wheel;
 mod wheels;
 
 use super::drawn::{Drawn, inside, neat, outside};
-use super::names::Names;
+use super::new_names::Names;
 use super::request::{Follower, Gesture, Onto, ShapeKind, Target, Through, WheelPair};
 use crate::write::{TomlText, in_braces, in_lines, in_unit, written};
 use biela::mechanism::{

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::names::named;
+use super::super::new_names::named;
 use super::super::reference::references;
 use super::{Editing, Refusal};
 use crate::write::TomlText;

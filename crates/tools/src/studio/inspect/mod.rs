@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use super::document::Document;
 use super::gesture::{Editing, Refusal};
-use super::names::named;
+use super::new_names::named;
 use actions::Actions;
 use rows::Rows;
 

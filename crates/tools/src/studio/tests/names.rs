@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::super::drawn::Drawn;
 use super::super::gesture::{self, Editing, Refusal};
-use super::super::names::named;
+use super::super::new_names::named;
 use super::{Files, act, act_warned, read, refusal, shipped, shipped_studio, state, studio};
 use crate::write::TomlText;
 use biela::mechanism::{Mechanism, Severity, Source};

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::picture;
+use crate::cli::at_rest::AtRest;
 use crate::cli::commands::check::oscillations;
-use crate::cli::free::AtRest;
 use crate::cli::given::conditions::Scenario;
 use crate::cli::given::input::Input;
 use crate::cli::given::signals::Signals;

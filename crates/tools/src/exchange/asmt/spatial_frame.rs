@@ -9,13 +9,13 @@ const PARALLEL: f64 = 1e-5;
 
 /// A frame in space: its origin and its axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct SpatialFrame {
     pub(super) at: Vector,
     /// Directions of the x-, y- and z-axis.
     pub(super) axes: [Vector; 3],
 }
 
-impl Place {
+impl SpatialFrame {
     /// The frame of the assembly.
     pub(super) const ORIGIN: Self = Self {
         at: [0.0; 3],
@@ -128,7 +128,7 @@ impl Plane {
     }
 
     /// Returns the angle of a frame: of its x-axis, or of the first axis in the plane.
-    pub(super) fn turn(&self, place: &Place) -> f64 {
+    pub(super) fn turn(&self, place: &SpatialFrame) -> f64 {
         let mut axes = place.axes.into_iter();
         let axis = axes.find(|axis| are_perpendicular(*axis, self.normal));
         axis.map_or(0.0, |axis| self.angle(axis))
