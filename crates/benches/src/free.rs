@@ -38,7 +38,8 @@ pub struct Run {
     text: fn() -> String,
     /// Time that passes \[s\], from one step of a host to the next.
     step: f64,
-    steps: u32,
+    /// Steps of the host in the whole run.
+    pub steps: u32,
     /// Times that others publish for it.
     pub published: &'static str,
 }
@@ -194,16 +195,16 @@ fn bouncing_chain() -> String {
 }
 
 impl Run {
-    /// Runs it once.
+    /// Runs its first steps once.
     ///
     /// # Panics
     ///
     /// If something is in the way.
     #[must_use]
-    pub fn cost(&self) -> Cost {
+    pub fn cost(&self, steps: u32) -> Cost {
         let mut free = Free::every(&(self.text)(), self.step);
         let (events, time) = timed(|| {
-            (0..self.steps).fold(0, |events, _| {
+            (0..steps).fold(0, |events, _| {
                 free.step();
                 events + free.motion.events().count()
             })

@@ -42,6 +42,17 @@ fn assert_close(found: &[Vec<f64>; 3], truth: &[Vec<f64>; 3], what: &str) {
     assert_within(LIMITS, found, truth, what);
 }
 
+/// Whole runs begin, and no energy appears: the tolerance is 1e-8, energies are up to some hundred joules.
+#[test]
+fn whole_runs_begin_and_keep_their_energy() {
+    for run in &free::RUNS {
+        let cost = run.cost(3);
+        let what = run.what;
+        assert!(cost.evaluations > 10, "{what}: {cost:?}");
+        assert!(cost.energy_error.abs() < 1e-5, "{what}: {cost:?}");
+    }
+}
+
 /// The same steps and evaluations, over ten seconds.
 #[test]
 fn free_motion_is_the_same() {

@@ -129,7 +129,7 @@ fn without_yardstick(out: &mut String, counter: Option<&Counter>) {
 fn free_runs(out: &mut String) {
     const REPEATS: usize = 5;
     let row = |run: &Run| {
-        let costs = [(); REPEATS].map(|()| run.cost());
+        let costs = [(); REPEATS].map(|()| run.cost(run.steps));
         let quickest = costs.into_iter().min_by(|a, b| a.time.total_cmp(&b.time));
         let cost = quickest.expect("it ran");
         let events = match cost.events {
