@@ -142,7 +142,12 @@ impl Equations {
                 Mode::Sticking if *before != Mode::Sticking || !is_there => {
                     self.passive.anchors[k] = value;
                 }
-                _ => {}
+                Mode::Free
+                | Mode::LooseAtMin
+                | Mode::LooseAtMax
+                | Mode::Sticking
+                | Mode::Growing
+                | Mode::Falling => {}
             }
         }
     }

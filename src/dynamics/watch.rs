@@ -203,16 +203,15 @@ impl Watch {
 
 /// Returns what the event indicators of a passive force watch, in words.
 fn cause_indicators(cause: &PassiveCause) -> [&'static str; FUNCTIONS] {
-    if cause.is_contact() {
-        [
+    match cause {
+        PassiveCause::Stop(_) | PassiveCause::Play(_) => [
             "gap above the least value while nothing touches, then the push",
             "gap below the largest value while nothing touches",
-        ]
-    } else {
-        [
+        ],
+        PassiveCause::Friction(_) => [
             "speed while friction slides, force above the least that sticks",
             "force below the largest that sticks",
-        ]
+        ],
     }
 }
 

@@ -18,7 +18,7 @@ use super::error::StateError;
 const SIGNATURE: [u8; 8] = *b"\x8bbiela\x1a\n";
 
 /// Version of the format, raised with every change of it.
-const VERSION: u32 = 11;
+const VERSION: u32 = 12;
 
 /// Length of signature, version and total length.
 const HEADER: usize = SIGNATURE.len() + 4 + 8;

@@ -124,7 +124,7 @@ def test_a_range_is_found_between_two_values(four_bar):
     assert (found.lower.kind, found.upper.kind) == ("bound", "bound")
     assert_allclose([found.lower.value, found.upper.value], [0.5, 2.0], rtol=1e-14)
     assert four_bar.range("crank_angle", between=(0.5, None)).lower.value == found.lower.value
-    again = four_bar.range("crank_angle", between=("0.5*base/(0.4*m)", "2"))
+    again = four_bar.range("crank_angle", between=("0.5*base/(400*mm)", "2"))
     assert_allclose([again.lower.value, again.upper.value], [0.5, 2.0], rtol=1e-14)
     with pytest.raises(biela.UsageError, match="between: no parameter `a`"):
         four_bar.range("crank_angle", between=("a", None))

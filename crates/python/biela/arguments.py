@@ -241,7 +241,7 @@ def courses_of(
     zeros = (0,) * len(shape)
     # Without a variant there are times all the same. Single values stand for constant arrays.
     row = lambda part: part[zeros] if part.size else np.zeros(count)
-    first = lambda part: row(part) if count > 1 else row(part)[0]
+    first = lambda part: row(part)[0] if count == 1 else row(part)
     return {**drive, **{name: tuple(map(first, parts)) for name, parts in full.items()}}, full, shape
 
 

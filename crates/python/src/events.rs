@@ -4,7 +4,7 @@ use biela::dynamics::{Event, EventKind};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
-/// Events as columns: the variant, the time \[s\], the place of the kind in `biela.events.KINDS`, the
+/// Events as columns: the variant, the time \[s\], the place of the kind in `biela.parts.KINDS`, the
 /// index of the force, the speed before an impact \[m/s or rad/s\], not a number for other kinds.
 pub(crate) type EventColumns<'py> = (
     Bound<'py, PyArray1<usize>>,

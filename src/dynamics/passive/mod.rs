@@ -264,7 +264,7 @@ impl PassiveForces {
             let (coordinate, cause): (_, Box<dyn Cause>) = match &force.load {
                 Load::Passive { coordinate, cause } => match cause {
                     PassiveCause::Friction(_) => (coordinate, Box::new(Rubbing(frictions.next()?))),
-                    cause => {
+                    PassiveCause::Stop(_) | PassiveCause::Play(_) => {
                         let is_angle = coordinate.kind.is_angle();
                         let cause = cause.clone();
                         (coordinate, Box::new(Contact { cause, is_angle }))

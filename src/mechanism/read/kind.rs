@@ -297,12 +297,11 @@ pub(super) struct AnyOf<A, B>(PhantomData<(A, B)>);
 impl<A: Described, B: Described> Described for AnyOf<A, B> {
     fn schema() -> serde_json::Value {
         // One list of all shapes: forms and completion look for the shape of a thing in it.
-        let shapes = [A::schema(), B::schema()]
-            .into_iter()
-            .flat_map(|mut schema| match schema["anyOf"].take() {
-                serde_json::Value::Array(shapes) => shapes,
-                _ => vec![schema],
-            });
+        let shapes = [A::schema(), B::schema()].into_iter();
+        let shapes = shapes.flat_map(|schema| match schema.get("anyOf") {
+            Some(serde_json::Value::Array(shapes)) => shapes.clone(),
+            _ => vec![schema],
+        });
         serde_json::json!({ "anyOf": shapes.collect::<Vec<_>>() })
     }
 }

@@ -158,7 +158,7 @@ fn states_that_do_not_fit_are_refused_and_change_nothing() {
         (
             &altered(17),
             &size,
-            "has version 2; this FMU reads version 11",
+            "has version 2; this FMU reads version 12",
         ),
         (&altered(2 * right - 1), &size, "checksum"),
     ] {

@@ -62,8 +62,8 @@ fn what_is_wrong_with_bytes_is_told() {
         matches!(
             version,
             StateError::Version {
-                given: 27,
-                expected: 11
+                given: 28,
+                expected: 12
             }
         ),
         "{version}"
