@@ -12,7 +12,7 @@ use super::commands::export::{NO_SYSTEM, model_description, pack, platform, syst
 use super::commands::new::{templates, write_new};
 pub use super::commands::platforms::PlatformRow;
 use super::commands::platforms::rows;
-use super::commands::range::{self, DerivedRange, LargestForces, check_speed, out_of_reach};
+use super::commands::range::{self, FoundRange, LargestForces, check_speed};
 use super::commands::{import, page, report};
 use super::given::conditions::Scenario;
 use super::given::input::Input;
@@ -28,7 +28,7 @@ use super::told::error::Error;
 use crate::drawing::Sheet;
 use crate::drawing::animation::moving_gif;
 use biela::fmi::{Platform, RuntimeLibrary, Version};
-use biela::kinematics::{End, Extreme, Range, RangeSettings, Solver};
+use biela::kinematics::{End, Extreme, Range, Solver};
 use biela::mechanism::{DriverId, Mechanism, ParameterId, Source};
 
 /// A call that could not do its work, with the text that the program shows.
@@ -215,29 +215,17 @@ pub fn range(
     let mechanism = Arc::clone(solver.mechanism());
     check_order(bounds, [first, second])?;
     check_speed(speed, &mechanism, name)?;
-    let start = solver.pose().drivers[driver.index()];
-    let settings = RangeSettings {
-        bounds,
-        ..RangeSettings::default()
-    };
-    let range = solver.range(driver, &settings);
-    let why = out_of_reach(&mechanism, driver, start, bounds, &range, [first, second]);
-    if let Some(why) = why {
-        return Err(Failed::Mechanism(why));
-    }
-    let derived = DerivedRange::all(solver, driver, &range, speed);
-    let forces = mechanism
-        .has_dynamics()
-        .then(|| LargestForces::new(solver, driver, &range, speed.unwrap_or(0.0)));
-    let forces = forces.as_ref();
+    let found = FoundRange::new(solver, driver, bounds, speed, [first, second]);
+    let found = found.map_err(Failed::Mechanism)?;
+    let forces = found.forces.as_ref();
     Ok(ToldRange {
-        derived: (derived.into_iter())
+        derived: (found.derived.into_iter())
             .map(|measure| (measure.values, measure.extremes))
             .collect(),
         effort: forces.and_then(LargestForces::effort),
         reaction: forces.and_then(LargestForces::reaction),
         without_forces: forces.and_then(|forces| forces.without(&mechanism, driver)),
-        range,
+        range: found.range,
     })
 }
 

@@ -10,10 +10,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
-use derived::uses_rates;
+use derived::{DerivedRange, uses_rates};
 use follower::{at_speed, without_value};
 
-pub(in crate::cli) use derived::DerivedRange;
 pub(in crate::cli) use forces::LargestForces;
 
 use super::check::scientific;
@@ -82,29 +81,20 @@ impl Range {
                 .of(&self.conditions, &input.mechanism, *driver)?,
             None => [None; 2],
         };
-        let settings = RangeSettings {
-            bounds,
-            ..RangeSettings::default()
-        };
         check_speed(self.speed, &input.mechanism, "--speed")?;
         let mut solver = self.conditions.solver_at_start(&input)?;
         let driven = Arc::clone(solver.mechanism());
         let mut text = String::new();
         for &driver in &drivers {
             let start = solver.pose().drivers[driver.index()];
-            let range = solver.range(driver, &settings);
             let options = ["--from", "--to"];
-            if let Some(why) = out_of_reach(&driven, driver, start, bounds, &range, options) {
+            let found = FoundRange::new(&mut solver, driver, bounds, self.speed, options);
+            let found = found.map_err(|why| {
                 let file = input.source.name().to_owned();
-                return Err(Error::Stopped { file, why });
-            }
-            let derived = DerivedRange::all(&mut solver, driver, &range, self.speed);
-            describe(&mut text, &driven, driver, start, &range, &derived);
-            if driven.has_dynamics() {
-                let speed = self.speed.unwrap_or(0.0);
-                LargestForces::new(&mut solver, driver, &range, speed)
-                    .describe(&mut text, &driven, driver);
-            }
+                Error::Stopped { file, why }
+            })?;
+            found.describe(&mut text, &driven, driver, start);
+            let FoundRange { range, derived, .. } = found;
             if let Some(path) = &self.csv {
                 write(path, table(&driven, driver, &range, &derived).as_bytes())?;
                 tell_written(path);
@@ -155,6 +145,57 @@ impl Range {
     }
 }
 
+/// The range of a driver, with what is computed over it.
+pub(in crate::cli) struct FoundRange {
+    pub(in crate::cli) range: kinematics::Range,
+    pub(in crate::cli) derived: Vec<DerivedRange>,
+    /// `None` without masses and forces.
+    pub(in crate::cli) forces: Option<LargestForces>,
+}
+
+impl FoundRange {
+    /// Finds that of a driver from the solver's pose, with forces at a speed \[m/s or rad/s\], by default at
+    /// rest. The pose is restored.
+    ///
+    /// # Errors
+    ///
+    /// The driver does not get to the bounds, which have these names: says why.
+    pub(in crate::cli) fn new(
+        solver: &mut Solver,
+        driver: DriverId,
+        bounds: [Option<f64>; 2],
+        speed: Option<f64>,
+        names: [&str; 2],
+    ) -> Result<Self, String> {
+        let mechanism = Arc::clone(solver.mechanism());
+        let start = solver.pose().drivers[driver.index()];
+        let settings = RangeSettings {
+            bounds,
+            ..RangeSettings::default()
+        };
+        let range = solver.range(driver, &settings);
+        if let Some(why) = out_of_reach(&mechanism, driver, start, bounds, &range, names) {
+            return Err(why);
+        }
+        let derived = DerivedRange::all(solver, driver, &range, speed);
+        let speed = speed.unwrap_or(0.0);
+        let has_forces = mechanism.has_dynamics();
+        let forces = has_forces.then(|| LargestForces::new(solver, driver, &range, speed));
+        Ok(Self {
+            range,
+            derived,
+            forces,
+        })
+    }
+
+    fn describe(&self, text: &mut String, mechanism: &Mechanism, driver: DriverId, start: f64) {
+        describe(text, mechanism, driver, start, &self.range, &self.derived);
+        if let Some(forces) = &self.forces {
+            forces.describe(text, mechanism, driver);
+        }
+    }
+}
+
 /// Refuses a speed, an argument of this name, that is not finite or has no effect.
 pub(in crate::cli) fn check_speed(
     speed: Option<f64>,
@@ -179,19 +220,17 @@ pub(in crate::cli) fn check_speed(
 pub(in crate::cli) fn told(solver: &mut Solver, driver: DriverId) -> (String, Chart) {
     let mechanism = Arc::clone(solver.mechanism());
     let start = solver.pose().drivers[driver.index()];
-    let range = solver.range(driver, &RangeSettings::default());
-    let derived = DerivedRange::all(solver, driver, &range, None);
+    let found = FoundRange::new(solver, driver, [None; 2], None, [""; 2]);
+    let found = found.expect("there are no bounds to get to");
     let mut text = String::new();
-    describe(&mut text, &mechanism, driver, start, &range, &derived);
-    if mechanism.has_dynamics() {
-        LargestForces::new(solver, driver, &range, 0.0).describe(&mut text, &mechanism, driver);
-    }
-    (text, chart(&mechanism, driver, &range, &derived))
+    found.describe(&mut text, &mechanism, driver, start);
+    let chart = chart(&mechanism, driver, &found.range, &found.derived);
+    (text, chart)
 }
 
 /// Returns the reason why a range has no poses: from its start the driver does not get to the
 /// bounds, which have these names.
-pub(in crate::cli) fn out_of_reach(
+fn out_of_reach(
     mechanism: &Mechanism,
     driver: DriverId,
     start: f64,
