@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -95,3 +97,9 @@ class StoppedError(Error):
 
 class MechanismWarning(UserWarning):
     """Warning about a mechanism file, or about a run near a singular position."""
+
+
+def warn(notices: Iterable[str]) -> None:
+    """Warns of each, at the call of the function that calls this one."""
+    for notice in notices:
+        warnings.warn(notice, MechanismWarning, stacklevel=3)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from . import _biela
 from .arguments import path_argument, text_argument
-from .errors import MechanismWarning
+from .errors import warn
 from .mechanism import Mechanism, loads
 from .texts import written
 
@@ -35,8 +34,7 @@ def import_mechanism(
     name, content, notes = _biela.import_mechanism(path_argument("source", source), length)
     if path is not None:
         written(path, content)
-    for note in notes:
-        warnings.warn(note, MechanismWarning, stacklevel=2)
+    warn(notes)
     return loads(content, f"{name}.toml" if path is None else os.fspath(path))
 
 

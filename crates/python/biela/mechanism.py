@@ -44,6 +44,7 @@ from .errors import (
     StoppedError,
     UsageError,
     diagnostics,
+    warn,
 )
 from .optional import needed
 from .parts import (
@@ -323,8 +324,7 @@ class Mechanism:
             self._moving(motions[1]),
             tuple(event for _, event in events_of(raw.events(), self._inner.force_names)),
         )
-        for notice in raw.notices:
-            warnings.warn(notice, MechanismWarning, stacklevel=2)
+        warn(raw.notices)
         if raw.stop is not None and stop == "raise":
             raise StoppedError(f"{self.name}: {raw.stop}", result)
         return result
@@ -516,17 +516,14 @@ class Mechanism:
         drivers, q, states, inputs, matrices, held = self._inner.linearize(
             start, given_values(parameters), indices, balance
         )
-        for _, _, text in held:
-            notice = f"{text}: what is held does not move in these equations"
-            warnings.warn(notice, MechanismWarning, stacklevel=2)
+        warn(f"{text}: what is held does not move in these equations" for _, _, text in held)
         driven = [name for name, _ in start[1] if name in self.freedoms]
         taken = [f"{name}.{rate}" for name in driven for rate in ("position", "velocity")]
-        for name in driven:
-            notice = (
-                f"`drive` moves freedom `{name}`, which has no states then; "
-                f"`parameters` sets its start: `{name}.position`"
-            )
-            warnings.warn(notice, MechanismWarning, stacklevel=2)
+        warn(
+            f"`drive` moves freedom `{name}`, which has no states then; "
+            f"`parameters` sets its start: `{name}.position`"
+            for name in driven
+        )
         shapes = [(len(rows), len(columns)) for rows in (states, names) for columns in (states, inputs)]
         return StateSpace(
             tuple(states),
@@ -602,8 +599,7 @@ class Mechanism:
         )
         if file is not None:
             written(file, bytes(content))
-        for note in notes:
-            warnings.warn(note, MechanismWarning, stacklevel=2)
+        warn(notes)
         return Drawing(drawing)
 
     def convert(
@@ -626,8 +622,7 @@ class Mechanism:
         text, notes = self._inner.convert(text_argument("to", to), start, given_values(parameters))
         if path is not None:
             written(path, text)
-        for note in notes:
-            warnings.warn(note, MechanismWarning, stacklevel=2)
+        warn(notes)
         return text
 
     def report(
@@ -640,8 +635,7 @@ class Mechanism:
         name with `_report.html`."""
         path = Path(f"{self.name}_report.html") if path is None else path
         page, notes = self._inner.page_of_report(self._start(drive), given_values(parameters))
-        for note in notes:
-            warnings.warn(note, MechanismWarning, stacklevel=2)
+        warn(notes)
         return written(path, page)
 
     def page(
