@@ -22,6 +22,17 @@ struct Free<'a> {
     shapes: &'a str,
 }
 
+/// A disc at rest at the origin.
+const DISC: Free<'static> = Free {
+    name: "disc",
+    q: [0.0; 3],
+    p: [0.0; 3],
+    mass: 1.0,
+    inertia: 0.005,
+    markers: "",
+    shapes: "rim = { disc = 'O', radius = 0.1 }",
+};
+
 /// A file with shapes of ground, bodies and contacts.
 fn file(ground: &str, bodies: &[Free<'_>], more: &str) -> String {
     let mut text = format!("format = 1\nname = 'free'\n{ground}\n");
@@ -80,13 +91,8 @@ fn a_disc_bounces_down_a_slope() {
         -20.0 * sin
     );
     let disc = Free {
-        name: "disc",
         q: [0.6 * sin, 0.6 * cos, 0.0],
-        p: [0.0; 3],
-        mass: 1.0,
-        inertia: 0.005,
-        markers: "",
-        shapes: "rim = { disc = 'O', radius = 0.1 }",
+        ..DISC
     };
     let more = "[contacts]\nhit = { shapes = ['disc.rim', 'ground.slope'], restitution = 0.6 }";
     let text = file(&ground, &[disc], more);
@@ -120,13 +126,8 @@ fn a_disc_rests_in_a_groove() {
     let ground = "[ground.markers]\nZ = [0, 0]\nL = [-1, 1]\nR = [1, 1]\n[ground.shapes]\n\
                   groove = { wall = ['R', 'Z', 'L'], depth = 0.05 }";
     let disc = |height: f64| Free {
-        name: "disc",
         q: [0.0, 0.1 * 2_f64.sqrt() + height, 0.0],
-        p: [0.0; 3],
-        mass: 1.0,
-        inertia: 0.005,
-        markers: "",
-        shapes: "rim = { disc = 'O', radius = 0.1 }",
+        ..DISC
     };
     let more = "[contacts]\nhit = { shapes = ['disc.rim', 'ground.groove'] }";
     let mut still = run(&file(ground, &[disc(0.0)], more));
@@ -243,13 +244,10 @@ fn a_disc_meets_a_post_at_any_rows() {
         (0.061, 1),
     ] {
         let disc = Free {
-            name: "disc",
             q: [0.0, y, 0.0],
             p: [10.0, 0.0, 0.0],
-            mass: 1.0,
-            inertia: 0.005,
-            markers: "",
             shapes: "rim = { disc = 'O', radius = 0.05 }",
+            ..DISC
         };
         let more = "[contacts]\nhit = { shapes = ['disc.rim', 'ground.post'], restitution = 1 }\n\
                     [simulation]\ngravity = [0, 0]";
@@ -346,13 +344,9 @@ fn two_capsules_meet_in_flight() {
 #[test]
 fn a_disc_bounces_on_an_elastic_floor() {
     let disc = Free {
-        name: "disc",
         q: [0.0, 0.3, 0.0],
-        p: [0.0; 3],
         mass: 2.0,
-        inertia: 0.005,
-        markers: "",
-        shapes: "rim = { disc = 'O', radius = 0.1 }",
+        ..DISC
     };
     let more = "[contacts]\nhit = { shapes = ['disc.rim', 'ground.floor'], stiffness = 8e3 }";
     let text = file(FLOOR, &[disc], more);
@@ -486,13 +480,9 @@ fn table(radius: f64) -> String {
 #[test]
 fn a_disc_slides_over_an_edge() {
     let disc = Free {
-        name: "disc",
         q: [-0.3031, 0.1, 0.0],
         p: [0.5, 0.0, 0.0],
-        mass: 1.0,
-        inertia: 0.005,
-        markers: "",
-        shapes: "rim = { disc = 'O', radius = 0.1 }",
+        ..DISC
     };
     let more = "[contacts]\nhit = { shapes = ['disc.rim', 'ground.table'] }";
     let text = file(&table(0.05), &[disc], more);
