@@ -327,10 +327,9 @@ impl Equations {
             let coordinate = &self.passive.list[touch.force].coordinate;
             coordinate.shapes().is_some()
         };
-        let names = self.names(solver, pressed.iter().copied());
-        if names.len() > 1 && pressed.iter().any(has_shapes) {
+        let contacts = self.names(solver, pressed.iter().copied());
+        if contacts.len() > 1 && pressed.iter().any(has_shapes) {
             let time = solver.pose().time;
-            let contacts = names;
             return Err(Error::Squeezed { time, contacts });
         }
         let closing = touches.iter().zip(rates);

@@ -226,11 +226,10 @@ impl Mechanism {
 impl Force {
     /// Returns the file's own description, or else the place where the force acts.
     fn describe(&self, mechanism: &Mechanism) -> String {
-        if let (true, Some(bearing), Some(coordinate)) = (
-            self.description.is_empty(),
-            self.load.slides(),
-            self.load.coordinate(),
-        ) {
+        if !self.description.is_empty() {
+            return self.description.clone();
+        }
+        if let Some((bearing, coordinate)) = self.load.slides().zip(self.load.coordinate()) {
             let joint = &mechanism.joints[bearing.joint];
             let word = coordinate.kind.effort_word();
             return match bearing.way {
@@ -245,7 +244,6 @@ impl Force {
             };
         }
         match &self.load {
-            _ if !self.description.is_empty() => self.description.clone(),
             load @ (Load::Coordinate { coordinate, .. } | Load::Passive { coordinate, .. }) => {
                 let word = coordinate.kind.effort_word();
                 let along = coordinate.describe(mechanism);

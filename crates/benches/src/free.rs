@@ -27,7 +27,7 @@ joints.O = { type = "revolute", markers = ["ground.O", "rod.O"] }
 freedoms.swing = { coordinate = "angle", markers = ["ground.O", "rod.O"], start = 0 }
 "#;
 
-/// Ten bars that hang from each other and fall against stops at a right angle to the bar above.
+/// Bars that hang from each other, each with stops 0.6 rad to both sides of the bar above.
 const STOPPED: usize = 10;
 
 /// A whole run of free motion.
@@ -109,7 +109,7 @@ pub const RUNS: [Run; 8] = [
         published: "",
     },
     Run {
-        what: "ten hanging bars with elastic impacts, 2 s",
+        what: "ten hanging bars with impacts, 2 s",
         text: bouncing_chain,
         step: 0.1,
         steps: 20,

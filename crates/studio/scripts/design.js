@@ -14,7 +14,7 @@ const LONG_PRESS = 550;
 
 // Clicks above which Enter ends a tool.
 const MANY = 10;
-// What touches a cam.
+// Followers of a cam, in words and in the file.
 const FOLLOWERS = [
   ["A follower with a point", "knife"],
   ["A follower with a roller", "roller"],
