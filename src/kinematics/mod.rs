@@ -101,4 +101,4 @@ pub use start::Assembly;
 pub use state::{Pose, SolverChoices};
 pub use stop_limit::StopLimit;
 pub use system::structure::{Dependencies, Structure};
-pub use system::{Equation, System, Target, Targets};
+pub use system::{Equation, EquationTarget, System, Targets};

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 pub(super) mod generated;
 
 use super::constraint::Gradient;
-use super::system::Target;
+use super::system::EquationTarget;
 use super::{DriverPath, Path, Rates, Solver};
 use crate::mechanism::{Jet, Mechanism, Source};
 use proptest::prelude::*;
@@ -59,8 +59,8 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
 
     let equations = solver.system().equations();
     let driver = |row: usize| match equations[row].target {
-        Target::Constant(_) => Jet::constant(0.0),
-        Target::Driver(driver) => drivers[driver.index()],
+        EquationTarget::Constant(_) => Jet::constant(0.0),
+        EquationTarget::Driver(driver) => drivers[driver.index()],
     };
     let order = equations.len();
     let nu = DVector::from_fn(order, |row, _| driver(row).first());

@@ -25,8 +25,8 @@ use super::state::{Pose, SolverChoices, State};
 use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{
-    BodyId, Coordinate, DriverId, Indeterminate, Jet, Load, MarkerId, Mechanism, Order,
-    ParameterId, PrescribedMotion, Run, ShapeId,
+    BodyId, Coordinate, DriverId, FeatureRun, Indeterminate, Jet, Load, MarkerId, Mechanism, Order,
+    ParameterId, PrescribedMotion, ShapeId,
 };
 
 /// Solves position, velocity and acceleration of one mechanism.
@@ -388,7 +388,7 @@ impl Solver {
     /// \[m\]; `None` for shapes that no measure and no contact names.
     #[must_use]
     pub fn clearance(&self, shapes: [ShapeId; 2]) -> Option<(f64, [[f64; 2]; 2])> {
-        let runs = [Run::WHOLE; 2];
+        let runs = [FeatureRun::WHOLE; 2];
         let clearance = Clearance { shapes, runs };
         let places = clearance.places(&self.state.at)?;
         Some((clearance.value(&self.state.at), places.map(Into::into)))

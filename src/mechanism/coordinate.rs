@@ -1,7 +1,9 @@
 //! Relative coordinates.
 
 use super::wording::fixed_apart;
-use super::{Driver, DriverId, DriverSource, MarkerId, Mechanism, Order, Run, ShapeId, Unit};
+use super::{
+    Driver, DriverId, DriverSource, FeatureRun, MarkerId, Mechanism, Order, ShapeId, Unit,
+};
 
 /// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,7 +155,7 @@ pub enum CoordinateKind {
     Distance,
     /// Least distance of the outlines of two shapes, as far as runs of their features make them \[m\]. The
     /// markers are the first ones of both.
-    Clearance([ShapeId; 2], [Run; 2]),
+    Clearance([ShapeId; 2], [FeatureRun; 2]),
 }
 
 impl CoordinateKind {

@@ -102,7 +102,7 @@ pub(crate) use rope::MOST_BODIES;
 pub use rope::{Pulley, PulleySide, Rope, RopePoint};
 pub use setting::{Extrapolation, RateSource};
 pub use shape::{
-    Core, Feature, FeatureKind, OutlineCorner, Piece, Run, Section, Shape, ShapeFault,
+    Core, Feature, FeatureKind, FeatureRun, OutlineCorner, Piece, Section, Shape, ShapeFault,
     ShapeFaultKind, ShapeForm, Weight,
 };
 pub(crate) use signal::SUFFIXES;

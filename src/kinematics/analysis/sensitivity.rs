@@ -21,7 +21,7 @@ use crate::kinematics::plan::JacobianFactors;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::singular::{Kind, NearPoint, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
-use crate::kinematics::system::{System, Target};
+use crate::kinematics::system::{EquationTarget, System};
 use crate::mechanism::{
     DerivedMeasure, DriverId, Dual, Expression, ForceQuantity, Jet, MarkerId, Mechanism,
     MotionInForce, Order, ParameterId, PrescribedMotion, Signal,
@@ -180,7 +180,7 @@ impl Sensitivity<'_> {
                 .map(|(value, expression)| (value, expression, what.clone()))
         });
         let targets = system.equations().iter().filter_map(|equation| {
-            let Target::Constant(expression) = &equation.target else {
+            let EquationTarget::Constant(expression) = &equation.target else {
                 return None;
             };
             let value = evaluate(expression, &self.parameters);
@@ -500,8 +500,8 @@ impl State {
             .equations()
             .iter()
             .map(|equation| match &equation.target {
-                Target::Constant(value) => evaluate(value, &along.parameters),
-                Target::Driver(driver) => along.drivers[driver.index()],
+                EquationTarget::Constant(value) => evaluate(value, &along.parameters),
+                EquationTarget::Driver(driver) => along.drivers[driver.index()],
             })
             .collect();
         let mut side = vec![0.0; targets.len()];

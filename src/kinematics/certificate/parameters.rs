@@ -18,7 +18,7 @@ use crate::kinematics::constraint::moving_configuration::{
 };
 use crate::kinematics::constraint::{Constraint, CoreMotion, Dimension, partial};
 use crate::kinematics::path::Path;
-use crate::kinematics::system::{Equation, System, Target, Targets};
+use crate::kinematics::system::{Equation, EquationTarget, System, Targets};
 use crate::kinematics::tolerances::SMALLEST_SUBSTEP;
 use crate::mechanism::{
     Coordinate, DriverId, Expression, Interval, Joint, Marker, MarkerId, Mechanism, MotionInForce,
@@ -240,7 +240,7 @@ impl ParameterBounds {
         let rows = equations.map(|(row, equation)| {
             let mut parameters = system.incidence(row).parameters;
             parameters.extend_from_slice(&equation.parameters);
-            if let Target::Constant(target) = &equation.target {
+            if let EquationTarget::Constant(target) = &equation.target {
                 parameters.extend(target.parameters());
             }
             Row {
@@ -362,7 +362,7 @@ impl ParameterBounds {
                 Dimension::Length => LARGEST_JUMP * equation.size(at),
                 Dimension::Angle => LARGEST_JUMP,
             };
-            if let Target::Constant(target) = &equation.target
+            if let EquationTarget::Constant(target) = &equation.target
                 && target.parameters().any(changed)
             {
                 let in_force = [targets.constant(index)];

@@ -10,7 +10,9 @@ use super::moving_configuration::{
 };
 use super::point::{angular_velocity, centripetal, point_velocity};
 use super::region::Region;
-use crate::mechanism::{BodyId, Feature, FeatureKind, Mechanism, Number, Run, ShapeForm, ShapeId};
+use crate::mechanism::{
+    BodyId, Feature, FeatureKind, FeatureRun, Mechanism, Number, ShapeForm, ShapeId,
+};
 
 #[cfg(test)]
 mod tests;
@@ -27,7 +29,7 @@ pub struct Clearance {
     /// The two shapes, on different bodies.
     pub shapes: [ShapeId; 2],
     /// The features of each core among which the nearest ones are.
-    pub runs: [Run; 2],
+    pub runs: [FeatureRun; 2],
 }
 
 /// Features of two cores that are nearest to each other, and the form of their distance.

@@ -18,7 +18,7 @@ use super::{BlockPlan, BlockSolver};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::constraint::{Axis, Relation};
 use crate::kinematics::system::structure::{Block, Structure};
-use crate::kinematics::system::{System, Target};
+use crate::kinematics::system::{EquationTarget, System};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// Blocks of the structure that one block solver takes together.
@@ -98,8 +98,7 @@ fn revolutes(system: &System) -> Vec<Option<Revolute>> {
     let equations = system.equations();
     let point = |row: usize| {
         let equation = equations.get(row)?;
-        let at_zero =
-            matches!(&equation.target, Target::Constant(value) if value.literal() == Some(0.0));
+        let at_zero = matches!(&equation.target, EquationTarget::Constant(value) if value.literal() == Some(0.0));
         match Relation::of(&*equation.constraint) {
             Relation::Coincidence(c) if at_zero => Some(c),
             _ => None,
@@ -380,7 +379,10 @@ impl Search<'_> {
                     _ => return None,
                 };
                 let carried = own(partner) == Some(a);
-                let held = matches!(self.system.equations()[row].target, Target::Constant(_));
+                let held = matches!(
+                    self.system.equations()[row].target,
+                    EquationTarget::Constant(_)
+                );
                 let fits = if carried {
                     own(reference).is_none()
                 } else {

@@ -7,7 +7,7 @@ use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Incidence, OnCurve, of_coordinate};
 use crate::kinematics::stop_limit::StopLimit;
 use crate::kinematics::system::structure::{Block, Structure};
-use crate::kinematics::system::{System, Target, Targets};
+use crate::kinematics::system::{EquationTarget, System, Targets};
 use crate::mechanism::{DriverId, DriverSource, Mechanism, Stop};
 
 /// The equations of a mechanism and the way in which they are solved.
@@ -249,7 +249,7 @@ impl CompiledMechanism {
         let mut only = None;
         for block in self.blocks_behind(self.plan.blocks[block].columns()) {
             for &row in &block.rows {
-                if let Target::Driver(driver) = self.system.equations()[row].target
+                if let EquationTarget::Driver(driver) = self.system.equations()[row].target
                     && only.replace(driver).is_some_and(|other| other != driver)
                 {
                     return None;

@@ -6,7 +6,7 @@ use crate::kinematics::certificate::Pivots;
 use crate::kinematics::constraint::Gradient;
 use crate::kinematics::constraint::configuration::Configuration;
 use crate::kinematics::newton::{Correction, Limits, Rejected};
-use crate::kinematics::system::{System, Target, Targets};
+use crate::kinematics::system::{EquationTarget, System, Targets};
 use crate::mechanism::Jet;
 
 /// An unknown q of a row a q + Σ b_k q_k + c = target with constant coefficients, the q_k being
@@ -65,7 +65,7 @@ impl ExplicitUnknown {
             deviation += ratio * step.deviation(column);
         }
         let equation = &state.system.equations()[row];
-        if let Target::Driver(driver) = equation.target {
+        if let EquationTarget::Driver(driver) = equation.target {
             deviation += step.bounds.drivers[driver.index()] * self.per_own.abs();
         }
         let parameters = &step.bounds.parameters;

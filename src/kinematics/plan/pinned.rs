@@ -9,7 +9,7 @@ use super::step::{BlockState, Step};
 use crate::kinematics::certificate::{ChordBound, Pivots, StepBounds};
 use crate::kinematics::constraint::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
-use crate::kinematics::system::{System, Target, Targets};
+use crate::kinematics::system::{EquationTarget, System, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
 /// x, y and phi of one body: phi from an angle to a body found before, x and y from a point that
@@ -134,7 +134,7 @@ impl SolveBlock for PinnedBody {
         if let Some(body) = self.reference {
             angle_deviation += bounds.body(body).angle_deviation;
         }
-        if let Target::Driver(driver) = state.system.equations()[parts.rows[2]].target {
+        if let EquationTarget::Driver(driver) = state.system.equations()[parts.rows[2]].target {
             angle_deviation += bounds.drivers[driver.index()];
         }
         let mut point_deviation = self.anchor.deviation(bounds, state.at.frames());
@@ -178,7 +178,7 @@ impl SolveBlock for PinnedBody {
             let phi = 3 * body + 2;
             [velocity[phi], acceleration[phi]]
         });
-        if let Target::Driver(driver) = state.system.equations()[parts.rows[2]].target {
+        if let EquationTarget::Driver(driver) = state.system.equations()[parts.rows[2]].target {
             let driver = drivers[driver.index()];
             omega += parts.sense * driver.first();
             alpha += parts.sense * driver.second();

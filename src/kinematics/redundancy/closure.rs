@@ -8,7 +8,7 @@ use crate::kinematics::assembly::search::{NoBranch, search};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
-use crate::kinematics::system::Target;
+use crate::kinematics::system::EquationTarget;
 use crate::kinematics::system::structure::Structure;
 use crate::kinematics::tolerances::SINGULAR;
 
@@ -92,7 +92,7 @@ fn superfluous_in(
     let mut echelon = Echelon::new(compiled.system.unknowns(), own);
     let is_driver = |row: &usize| {
         let target = &compiled.system.equations()[*row].target;
-        matches!(target, Target::Driver(_))
+        matches!(target, EquationTarget::Driver(_))
     };
     let (drivers, others): (Vec<_>, Vec<_>) = part.rows.iter().partition(|row| is_driver(row));
     let order = drivers.into_iter().chain(others);

@@ -8,7 +8,7 @@ use crate::kinematics::error::{Error, Remedy};
 use crate::kinematics::linear::{Echelon, ReducedRow, Row, spread};
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
-use crate::kinematics::system::{System, Target};
+use crate::kinematics::system::{EquationTarget, System};
 use crate::kinematics::tolerances::{DEPENDENT, LEAST_COEFFICIENT};
 use crate::mechanism::{BodyId, Coordinate, DriverId, Joint, MarkerId, Mechanism};
 
@@ -228,7 +228,10 @@ fn ranks(compiled: &CompiledMechanism, state: &State) -> Ranks {
     let mut constraints = 0;
     // The drivers' rows come last.
     for (row, entries) in rows.iter().enumerate() {
-        let is_driver = matches!(compiled.system.equations()[row].target, Target::Driver(_));
+        let is_driver = matches!(
+            compiled.system.equations()[row].target,
+            EquationTarget::Driver(_)
+        );
         if !is_driver {
             constraints += 1;
         }
@@ -262,7 +265,7 @@ fn free_motion(compiled: &CompiledMechanism, state: &State) -> Vec<f64> {
 /// Returns the rows that no driver moves.
 pub(super) fn constraint_rows(system: &System) -> Vec<usize> {
     let equations = system.equations().iter().enumerate();
-    let held = equations.filter(|(_, e)| matches!(e.target, Target::Constant(_)));
+    let held = equations.filter(|(_, e)| matches!(e.target, EquationTarget::Constant(_)));
     held.map(|(row, _)| row).collect()
 }
 
@@ -270,7 +273,7 @@ pub(super) fn constraint_rows(system: &System) -> Vec<usize> {
 pub(in crate::kinematics) fn drivers_first(system: &System) -> Vec<usize> {
     let equations = system.equations();
     let mut rows: Vec<_> = (0..equations.len()).collect();
-    rows.sort_by_key(|&row| matches!(equations[row].target, Target::Constant(_)));
+    rows.sort_by_key(|&row| matches!(equations[row].target, EquationTarget::Constant(_)));
     rows
 }
 

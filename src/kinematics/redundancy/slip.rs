@@ -14,7 +14,7 @@ use crate::kinematics::error::{Error, OpenJoint, OpenPose};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::plan::compiled_mechanism::CompiledMechanism;
 use crate::kinematics::state::State;
-use crate::kinematics::system::Target;
+use crate::kinematics::system::EquationTarget;
 use crate::kinematics::tolerances::DEPENDENT;
 
 /// Largest scaled residual, less its rounding, of rows that agree. A motion multiplies the residual
@@ -134,7 +134,7 @@ fn nearly_dependent(compiled: &CompiledMechanism, state: &State, gap: f64) -> Op
         }
     }
     for (row, equation) in equations.iter().enumerate() {
-        if matches!(equation.target, Target::Driver(_)) {
+        if matches!(equation.target, EquationTarget::Driver(_)) {
             // The mechanism cannot move as the driver asks: the gap is not the cause.
             if echelon.offer(row, &rows[row], left).is_some() {
                 return None;

@@ -32,7 +32,7 @@ use crate::mechanism::{
 
 /// The target of c(q).
 #[derive(Clone, Debug)]
-pub enum Target {
+pub enum EquationTarget {
     /// A number that depends on parameters only.
     Constant(Expression),
     /// The value of a driver.
@@ -47,7 +47,7 @@ pub struct Equation {
     /// c(q).
     pub constraint: Box<dyn Constraint>,
     /// The target.
-    pub target: Target,
+    pub target: EquationTarget,
     /// The parameters that it uses besides those of markers and of the target.
     pub parameters: Vec<ParameterId>,
     /// Size of its [part](parts) of the mechanism, relative to the mechanism's size.
@@ -115,7 +115,7 @@ impl System {
                 equations.push(Equation {
                     origin,
                     constraint,
-                    target: Target::Constant(target),
+                    target: EquationTarget::Constant(target),
                     parameters: joint_parts.parameters.clone(),
                     part: 1.0,
                 });
@@ -125,7 +125,7 @@ impl System {
             equations.push(Equation {
                 origin: Origin::Constraint(index),
                 constraint: constraint::of_coordinate(&held.coordinate),
-                target: Target::Constant(held.value.clone()),
+                target: EquationTarget::Constant(held.value.clone()),
                 parameters: Vec::new(),
                 part: 1.0,
             });
@@ -136,7 +136,7 @@ impl System {
             equations.push(Equation {
                 origin: Origin::Driver(DriverId(index)),
                 constraint: constraint::of_coordinate(&driver.coordinate),
-                target: Target::Driver(DriverId(index)),
+                target: EquationTarget::Driver(DriverId(index)),
                 parameters: Vec::new(),
                 part: 1.0,
             });
@@ -192,7 +192,7 @@ impl System {
         at.set_pose(&self.mechanism, &q);
         for row in rows {
             let value = self.equations[row].constraint.value(&at);
-            self.equations[row].target = Target::Constant(Expression::constant(value));
+            self.equations[row].target = EquationTarget::Constant(Expression::constant(value));
         }
         for open in self.open.iter_mut().filter(|open| is_drawn(open.joint)) {
             open.target = Expression::constant(open.relation.value(&at));
@@ -423,7 +423,7 @@ impl System {
             return Err(Error::Shape(Box::new(fault)));
         }
         for (equation, constant) in self.equations.iter().zip(&mut targets.constants) {
-            let Target::Constant(expression) = &equation.target else {
+            let EquationTarget::Constant(expression) = &equation.target else {
                 continue;
             };
             *constant = expression.value(parameters);
@@ -556,8 +556,10 @@ impl System {
     #[must_use]
     pub fn target(&self, row: usize, targets: &Targets, drivers: &[f64]) -> f64 {
         match self.equations[row].target {
-            Target::Constant(_) => targets.constants[row] + TAU * f64::from(targets.turns[row]),
-            Target::Driver(driver) => drivers[driver.index()],
+            EquationTarget::Constant(_) => {
+                targets.constants[row] + TAU * f64::from(targets.turns[row])
+            }
+            EquationTarget::Driver(driver) => drivers[driver.index()],
         }
     }
 
@@ -612,8 +614,8 @@ impl Equation {
     /// Returns the rates of the target, for these rates of the drivers: zero for a constant.
     pub(in crate::kinematics) fn target_rates(&self, drivers: &[Jet]) -> Jet {
         match self.target {
-            Target::Constant(_) => Jet::constant(0.0),
-            Target::Driver(driver) => drivers[driver.index()],
+            EquationTarget::Constant(_) => Jet::constant(0.0),
+            EquationTarget::Driver(driver) => drivers[driver.index()],
         }
     }
 
@@ -621,7 +623,7 @@ impl Equation {
     /// driver's angle counts turns.
     #[must_use]
     pub fn holds_any_turn(&self) -> bool {
-        matches!(self.target, Target::Constant(_))
+        matches!(self.target, EquationTarget::Constant(_))
             && self.constraint.turn_effect() == TurnEffect::Whole
     }
 

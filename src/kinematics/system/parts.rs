@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use petgraph::unionfind::UnionFind;
 
-use super::{Equation, Target};
+use super::{Equation, EquationTarget};
 use crate::kinematics::constraint::configuration::extent;
 use crate::kinematics::constraint::{Dimension, Incidence};
 use crate::kinematics::tolerances::NEGLIGIBLE_LENGTH;
@@ -61,7 +61,7 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
         }
     }
     for (equation, first) in equations.iter().zip(first) {
-        if let (Some(first), Target::Constant(target)) = (first, &equation.target)
+        if let (Some(first), EquationTarget::Constant(target)) = (first, &equation.target)
             && equation.constraint.dimension() == Dimension::Length
         {
             let part = parts.find(first);

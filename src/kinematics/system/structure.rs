@@ -11,7 +11,7 @@ use std::sync::{Arc, OnceLock};
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
-use super::{System, Target};
+use super::{EquationTarget, System};
 use crate::kinematics::constraint;
 use crate::kinematics::constraint::Incidence;
 use crate::mechanism::{
@@ -221,8 +221,10 @@ impl Structure {
         };
         for &row in &block.rows {
             match &system.equations()[row].target {
-                Target::Constant(expression) => block.parameters.extend(expression.parameters()),
-                Target::Driver(driver) => {
+                EquationTarget::Constant(expression) => {
+                    block.parameters.extend(expression.parameters())
+                }
+                EquationTarget::Driver(driver) => {
                     block.drivers.push(*driver);
                     if let Some(motion) = mechanism.drivers[driver.index()].motion() {
                         block.parameters.extend(motion.parameters());

@@ -1,7 +1,9 @@
 //! Coordinates between two markers, and the constraints and measures made of them.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::{Constraint, Coordinate, CoordinateKind, MarkerId, Measure, Run, ShapeId};
+use crate::mechanism::{
+    Constraint, Coordinate, CoordinateKind, FeatureRun, MarkerId, Measure, ShapeId,
+};
 
 use super::context::Context;
 use super::kind::{Entry, Text, Word, word_here};
@@ -108,7 +110,7 @@ impl<'a> Context<'a> {
     pub(super) fn clearance(&self, shapes: [ShapeId; 2]) -> Option<Coordinate> {
         let [from, to] = shapes.map(|shape| self.shapes[shape.index()].marker);
         Some(Coordinate {
-            kind: CoordinateKind::Clearance(shapes, [Run::WHOLE; 2]),
+            kind: CoordinateKind::Clearance(shapes, [FeatureRun::WHOLE; 2]),
             from: from?,
             to: to?,
             axes: from?,

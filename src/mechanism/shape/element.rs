@@ -11,15 +11,15 @@ use super::chain::{Chain, SMOOTH, Turn, cross, dot, sub};
 use super::core::position;
 use super::{Given, Shape, ShapeForm};
 
-/// Run of the features of a core along its outline, by their positions: 2 k at corner k, 2 k + 1 on the
+/// FeatureRun of the features of a core along its outline, by their positions: 2 k at corner k, 2 k + 1 on the
 /// edge from there to the next one. It may lead past the last corner to the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Run {
+pub struct FeatureRun {
     first: u16,
     last: u16,
 }
 
-impl Run {
+impl FeatureRun {
     /// All features.
     pub const WHOLE: Self = Self {
         first: 0,
@@ -48,9 +48,9 @@ impl Run {
 #[derive(Debug)]
 struct Runs {
     /// Round places: corners that stand out, and convex arcs in a row.
-    places: Vec<Run>,
+    places: Vec<FeatureRun>,
     /// Convex chains of edges, each between two corners.
-    chains: Vec<Run>,
+    chains: Vec<FeatureRun>,
     /// Whether all of the core is one place.
     is_disc: bool,
     /// Whether two chains have a place in common that stands out or is smooth.
@@ -61,7 +61,7 @@ struct Runs {
 #[derive(Debug)]
 pub(in crate::mechanism) struct Elements {
     /// The runs of their features that may touch, place against chain and then chain against place.
-    pub(in crate::mechanism) runs: Vec<[Run; 2]>,
+    pub(in crate::mechanism) runs: Vec<[FeatureRun; 2]>,
     /// Whether two elements may touch at one place, as at corners of both shapes.
     pub(in crate::mechanism) overlap: bool,
 }
@@ -85,14 +85,14 @@ pub(in crate::mechanism) fn elements(shapes: [&Shape; 2], given: &Given<'_, f64>
 
 impl Shape {
     fn runs(&self, given: &Given<'_, f64>) -> Runs {
-        let whole = |places: &[Run]| Runs {
+        let whole = |places: &[FeatureRun]| Runs {
             places: places.to_vec(),
-            chains: vec![Run::WHOLE],
+            chains: vec![FeatureRun::WHOLE],
             is_disc: !places.is_empty(),
             overlap: false,
         };
         match &self.form {
-            ShapeForm::Disc { .. } => whole(&[Run::WHOLE]),
+            ShapeForm::Disc { .. } => whole(&[FeatureRun::WHOLE]),
             ShapeForm::Hole { .. } => whole(&[]),
             ShapeForm::Bar { markers, .. } => {
                 let last = markers.len() - 1;
@@ -104,11 +104,13 @@ impl Shape {
                 });
                 let corners = [0].into_iter().chain(bends).chain([last]);
                 let corners: Vec<usize> = corners.collect();
-                let places = corners.iter().map(|&k| Run::between(k, k));
+                let places = corners.iter().map(|&k| FeatureRun::between(k, k));
                 let chains = corners.windows(2);
                 Runs {
                     places: places.collect(),
-                    chains: chains.map(|ends| Run::between(ends[0], ends[1])).collect(),
+                    chains: chains
+                        .map(|ends| FeatureRun::between(ends[0], ends[1]))
+                        .collect(),
                     is_disc: false,
                     overlap: corners.len() > 2,
                 }
@@ -168,16 +170,16 @@ impl OutlineTurns {
             matches!(turn, Turn::Convex | Turn::Back) && !is_beside_arc(*k)
         };
         let corners = (0..count).filter(stands_out);
-        let corners = corners.map(|k| Run::between(k, k));
+        let corners = corners.map(|k| FeatureRun::between(k, k));
         let hollow = (0..self.edges.len()).filter(|&k| self.edges[k] < 0.0);
-        let hollow = hollow.map(|k| Run::between(k, (k + 1) % count));
+        let hollow = hollow.map(|k| FeatureRun::between(k, (k + 1) % count));
         let chains = self.pieces(|k| self.edges[k] >= 0.0).into_iter();
-        let chains: Vec<Run> = chains.chain(hollow).collect();
-        let parts = |run: &Run| {
+        let chains: Vec<FeatureRun> = chains.chain(hollow).collect();
+        let parts = |run: &FeatureRun| {
             let ends = [run.first, run.last].map(|position| usize::from(position / 2));
             let is_part =
                 |k: usize| !matches!(self.corners.get(k), Some((Turn::Hollow | Turn::Back, _)));
-            *run != Run::WHOLE && ends.into_iter().any(is_part)
+            *run != FeatureRun::WHOLE && ends.into_iter().any(is_part)
         };
         Runs {
             places: corners.chain(places).collect(),
@@ -191,13 +193,13 @@ impl OutlineTurns {
     ///
     /// They end at corners that are hollow, and where they would turn by more than half a turn: round a
     /// notch a longer one would be near to one place in two ways.
-    fn pieces(&self, is_one: impl Fn(usize) -> bool) -> Vec<Run> {
+    fn pieces(&self, is_one: impl Fn(usize) -> bool) -> Vec<FeatureRun> {
         let (count, edges) = (self.corners.len(), self.edges.len());
         let is_hollow = |k: usize| self.corners[k].0 == Turn::Hollow;
         let ends = |k: usize| is_hollow(k) || !is_one(k) || !is_one((k + count - 1) % count);
         let start = if self.is_closed {
             let Some(start) = (0..count).find(|&k| ends(k)) else {
-                return vec![Run::WHOLE];
+                return vec![FeatureRun::WHOLE];
             };
             start
         } else {
@@ -218,7 +220,7 @@ impl OutlineTurns {
             if goes_on && after <= PI + SMOOTH {
                 begun = Some((first, after));
             } else {
-                pieces.push(Run::between(first, next));
+                pieces.push(FeatureRun::between(first, next));
             }
         }
         pieces

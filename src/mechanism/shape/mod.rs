@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `chain` | corners and edges of a shape, and what a fillet or a rim makes of them |
 //! | `core` | [`Core`]: the places and edges round which a shape has its radius |
-//! | `element` | [`Run`]: the parts of two shapes that touch at one place |
+//! | `element` | [`FeatureRun`]: the parts of two shapes that touch at one place |
 //! | `fault` | [`ShapeFault`]: outlines that do not close round an area |
 //! | `weight` | area, centre and second moment; mass, centre and inertia of a body |
 //!
@@ -23,7 +23,7 @@ mod tests;
 
 pub use self::core::{Core, Feature, FeatureKind};
 pub use chain::Piece;
-pub use element::Run;
+pub use element::FeatureRun;
 pub(super) use element::{Elements, elements};
 pub use fault::{ShapeFault, ShapeFaultKind};
 pub use weight::{Section, Weight};

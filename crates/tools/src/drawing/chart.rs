@@ -8,7 +8,7 @@ use super::ticks::Ticks;
 
 /// Chart: panels of lines over a common x-axis.
 #[derive(Clone, Debug)]
-pub struct Chart {
+pub struct LineChart {
     /// Title, in a word.
     pub title: String,
     /// Subtitle in one line; may be empty.
@@ -83,7 +83,7 @@ const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.5], &[8.0, 2.5, 2.0, 2.5
 impl Sheet {
     /// Draws a chart.
     #[must_use]
-    pub fn chart(chart: &Chart) -> Self {
+    pub fn chart(chart: &LineChart) -> Self {
         let scales: Vec<Scale> = chart.panels.iter().map(Scale::new).collect();
         let widest = scales.iter().map(Scale::width).fold(0.0, f64::max);
         let mut plot = Plot {
@@ -172,7 +172,7 @@ const END: f64 = 1.0;
 
 /// A chart while it is drawn.
 struct Plot<'a> {
-    chart: &'a Chart,
+    chart: &'a LineChart,
     /// Left edge of the panels.
     left: f64,
     x: [f64; 2],
@@ -382,7 +382,7 @@ mod tests {
             label: "time".to_owned(),
             unit: "s".to_owned(),
         };
-        let chart = |instants| Chart {
+        let chart = |instants| LineChart {
             title: String::new(),
             description: String::new(),
             x: axis(),

@@ -3,7 +3,7 @@
 //! A [`Scene`] holds the symbols of a mechanism in the frames of its bodies: links, joints,
 //! drivers, ground. It is the same for every pose. A [`Sheet`] has the scene on paper at one pose,
 //! with lines and letters of a readable size whatever the mechanism's size. [`svg`] and [`png`]
-//! write a sheet. A [`Chart`] is drawn on a sheet as well; an [`animation`] is a page on which the
+//! write a sheet. A [`LineChart`] is drawn on a sheet as well; an [`animation`] is a page on which the
 //! mechanism moves.
 //!
 //! | module | subject |
@@ -56,7 +56,7 @@ pub mod symbol;
 mod ticks;
 
 pub use anchor::{Anchor, Frame};
-pub use chart::{Axis, COLOURS, Chart, Line, Panel};
+pub use chart::{Axis, COLOURS, Line, LineChart, Panel};
 pub use diagram::{Diagram, Followed};
 pub use force_place::ForcePlace;
 pub use palette::Colour;

@@ -59,7 +59,7 @@ fn clearances(mechanism: &Mechanism) -> Vec<Clearance> {
     let shapes = measures.filter_map(|measure| measure.coordinate.shapes());
     let whole = |shapes| Clearance {
         shapes,
-        runs: [Run::WHOLE; 2],
+        runs: [FeatureRun::WHOLE; 2],
     };
     shapes.map(whole).collect()
 }

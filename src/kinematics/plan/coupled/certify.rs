@@ -25,7 +25,7 @@ use super::contraction::{
 };
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::step::{BlockState, Step};
-use crate::kinematics::system::Target;
+use crate::kinematics::system::EquationTarget;
 use crate::kinematics::tolerances::AT_ROUNDING;
 
 /// First trial radii, as a multiple of the square of the largest move of an unknown: a motion that
@@ -262,7 +262,7 @@ impl CoupledBlock {
         for (local, &row) in equations.rows.iter().enumerate() {
             let bend = equations.bend_on_chord(local, state, bounds)?;
             let mut open = 0.125 * bend.along;
-            if let Target::Driver(driver) = state.system.equations()[row].target {
+            if let EquationTarget::Driver(driver) = state.system.equations()[row].target {
                 open += bounds.drivers[driver.index()] * bend.row_scale;
             }
             for (column, value) in bend.changes() {

@@ -29,7 +29,7 @@ use super::contraction::{
 };
 use crate::kinematics::linear::{Factors, nan_or_larger};
 use crate::kinematics::plan::step::{BlockState, Step};
-use crate::kinematics::system::Target;
+use crate::kinematics::system::EquationTarget;
 use crate::kinematics::tolerances::STALLED;
 
 /// Factor on estimates in place of a bound.
@@ -106,9 +106,9 @@ impl CoupledBlock {
         equations.evaluate(state, middle, |local, value| {
             let target = &state.system.equations()[equations.rows[local]].target;
             gap[local] = match target {
-                Target::Constant(_) => value.value,
+                EquationTarget::Constant(_) => value.value,
                 // The driver is at its end; `bend_around` adds its chord.
-                Target::Driver(_) => 0.0,
+                EquationTarget::Driver(_) => 0.0,
             };
             // The rounding of the rows at both ends of a chord.
             rounding[local] = 2.0 * STALLED * value.rounding;
@@ -183,7 +183,9 @@ impl CoupledBlock {
                 }
             };
             let differs = if function.is_some() { 2.0 } else { 1.0 };
-            if let Target::Driver(driver) = state.system.equations()[equations.rows[local]].target {
+            if let EquationTarget::Driver(driver) =
+                state.system.equations()[equations.rows[local]].target
+            {
                 open += 0.125 * bend.along + bounds.drivers[driver.index()] * bend.row_scale;
             }
             for (column, value) in bend.changes() {

@@ -33,7 +33,7 @@ use crate::kinematics::constraint::configuration::{BodyPose, perp, rotate};
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::plan::anchor::Anchor;
 use crate::kinematics::plan::step::{BlockState, Step};
-use crate::kinematics::system::Target;
+use crate::kinematics::system::EquationTarget;
 use crate::kinematics::tolerances::WITHOUT_DIRECTION;
 
 /// The start of a sub-step.
@@ -133,8 +133,8 @@ impl RrpDyad {
             return Err(bounds.reject());
         }
         let target = match state.system.equations()[self.parts.row].target {
-            Target::Driver(driver) => bounds.drivers[driver.index()],
-            Target::Constant(_) => 0.0,
+            EquationTarget::Driver(driver) => bounds.drivers[driver.index()],
+            EquationTarget::Constant(_) => 0.0,
         };
         let outside = 2.0 * open + target + i.1 + j.1 + moved.open;
 
@@ -361,8 +361,8 @@ impl RrpDyad {
         let rounding = f64::EPSILON * (1.0 + state.at.frames()[*body as usize].phi.abs());
         let known = reference.map_or(0.0, |body| bounds.body(body).angle_deviation);
         let held = match state.system.equations()[parts.row].target {
-            Target::Driver(driver) => bounds.drivers[driver.index()],
-            Target::Constant(_) => 0.0,
+            EquationTarget::Driver(driver) => bounds.drivers[driver.index()],
+            EquationTarget::Constant(_) => 0.0,
         };
         rounding + known + held
     }

@@ -27,7 +27,7 @@ use crate::cli::results::plot::{MOST_BODIES, axis, panel, varies};
 use crate::cli::results::stdout::is_stdout;
 use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;
-use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
+use crate::drawing::{Axis, Line, LineChart, Panel, Sheet};
 use biela::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample, Solver};
 use biela::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};
 
@@ -217,7 +217,7 @@ pub(in crate::cli) fn check_speed(
 }
 
 /// Returns the lines that tell the range of a driver from the solver's pose, and its chart.
-pub(in crate::cli) fn told(solver: &mut Solver, driver: DriverId) -> (String, Chart) {
+pub(in crate::cli) fn told(solver: &mut Solver, driver: DriverId) -> (String, LineChart) {
     let mechanism = Arc::clone(solver.mechanism());
     let start = solver.pose().drivers[driver.index()];
     let found = FoundRange::new(solver, driver, [None; 2], None, [""; 2]);
@@ -484,7 +484,7 @@ fn chart(
     driver: DriverId,
     range: &kinematics::Range,
     derived: &[DerivedRange],
-) -> Chart {
+) -> LineChart {
     let of_driver = &mechanism.drivers[driver.index()];
     let [x_unit, angle] = [of_driver.coordinate.kind.unit(), Unit::RADIAN];
     let line = |name: &str, look: usize, unit: Unit, of: &dyn Fn(&Sample) -> f64| Line {
@@ -546,7 +546,7 @@ fn chart(
             })],
         });
     }
-    Chart {
+    LineChart {
         title: format!("{}: range of {}", mechanism.name, of_driver.name),
         description: mechanism.description.clone(),
         x: Axis {

@@ -7,7 +7,7 @@ use super::picture::Format;
 use super::recorder::Recorder;
 use crate::cli::told::error::Error;
 use crate::cli::told::message::Message;
-use crate::drawing::{Axis, COLOURS, Chart, Line, Panel, Sheet};
+use crate::drawing::{Axis, COLOURS, Line, LineChart, Panel, Sheet};
 use biela::dynamics::{Event, Motion};
 use biela::mechanism::{BodyId, Dimension, Mechanism, Order, Signal, Unit};
 
@@ -94,7 +94,7 @@ impl Plot {
 
     /// Returns the chart: one panel per unit, positions first and forces last; angles in degrees.
     /// Drivers have panels of their own, where their ramps leave the results their scale.
-    fn chart(self, mechanism: &Mechanism, events: &[Event]) -> Chart {
+    fn chart(self, mechanism: &Mechanism, events: &[Event]) -> LineChart {
         let times = events.iter().map(|event| event.time).collect();
         let looks = looks(&self.columns, mechanism);
         let mut panels: Vec<((Unit, bool), Panel)> = Vec::new();
@@ -125,7 +125,7 @@ impl Plot {
                 (Axis { label, unit }, self.times, times)
             }
         };
-        Chart {
+        LineChart {
             title: mechanism.name.clone(),
             description: mechanism.description.clone(),
             x,

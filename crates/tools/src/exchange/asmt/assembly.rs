@@ -15,7 +15,7 @@ pub(super) struct Assembly {
     /// Markers by their paths.
     by_path: HashMap<String, usize>,
     pub(super) joints: Vec<Joint>,
-    pub(super) motions: Vec<Motion>,
+    pub(super) motions: Vec<AsmtMotion>,
     pub(super) limits: Vec<Limit>,
     pub(super) forces: Vec<ForceTorque>,
     /// Entries that are not taken.
@@ -59,7 +59,7 @@ pub(super) struct Joint {
     pub(super) numbers: Vec<f64>,
 }
 
-pub(super) struct Motion {
+pub(super) struct AsmtMotion {
     pub(super) class: String,
     pub(super) name: String,
     pub(super) markers: [Marker; 2],
@@ -265,13 +265,13 @@ impl Assembly {
         &self,
         node: Node,
         joints: &HashMap<String, [Marker; 2]>,
-    ) -> Result<Motion, Error> {
+    ) -> Result<AsmtMotion, Error> {
         let class = node.text().to_owned();
         let name = node.required_value("Name", &class)?.to_owned();
         let markers = self.of_joint_or_own(node, &format!("motion `{name}`"), joints)?;
         let text = node.value("RotationZ").or(node.value("TranslationZ"));
         let text = text.unwrap_or_default().to_owned();
-        Ok(Motion {
+        Ok(AsmtMotion {
             class,
             name,
             markers,

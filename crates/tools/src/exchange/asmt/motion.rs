@@ -1,7 +1,7 @@
 //! Motions and limits of joints in the plane.
 
 use super::Reader;
-use super::assembly::{Limit, Marker, Motion};
+use super::assembly::{AsmtMotion, Limit, Marker};
 use super::expression;
 use crate::exchange::draft::{Coordinate, Driver, DriverSource, LengthUnit, PointRef, Stop};
 use crate::exchange::error::Error;
@@ -12,7 +12,7 @@ const ON_LIMIT: f64 = 1e-9;
 
 impl Reader<'_> {
     /// Adds a driver for a motion.
-    pub(super) fn motion(&mut self, motion: &Motion) -> Result<(), Error> {
+    pub(super) fn motion(&mut self, motion: &AsmtMotion) -> Result<(), Error> {
         let [i, j] = &motion.markers;
         let out_of_plane = || Error::OutOfPlane {
             joint: motion.name.clone(),

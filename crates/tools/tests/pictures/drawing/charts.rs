@@ -1,11 +1,11 @@
 //! Charts.
 
-use biela_tools::drawing::{Axis, Chart, Line, Panel, Sheet, png, svg};
+use biela_tools::drawing::{Axis, Line, LineChart, Panel, Sheet, png, svg};
 
 use crate::drawing::pictures::{WIDTH, check_apart, check_picture};
 
 /// A chart of lines in several panels, with gaps, noise and long names.
-fn chart() -> Chart {
+fn chart() -> LineChart {
     let at: Vec<f64> = (0..=4000).map(|k| f64::from(k) / 1000.0).collect();
     let line = |name: &str, look, f: &dyn Fn(f64) -> f64| Line {
         name: name.to_owned(),
@@ -22,7 +22,7 @@ fn chart() -> Chart {
             t + k as f64
         })
     });
-    Chart {
+    LineChart {
         title: "chart".to_owned(),
         description: String::new(),
         x: axis("time", "s"),

@@ -8,7 +8,8 @@ use crate::cli::given::input::Input;
 use crate::cli::told::error::Error;
 use biela::kinematics::{Path, RangeSettings, Solver};
 use biela::mechanism::{
-    BodyId, Coordinate, CoordinateKind, DriverId, Measure, Mechanism, Run, ShapeId, rounded, shown,
+    BodyId, Coordinate, CoordinateKind, DriverId, FeatureRun, Measure, Mechanism, ShapeId, rounded,
+    shown,
 };
 
 /// Tells the area of each body with shapes, and the mass that these give it.
@@ -144,7 +145,7 @@ pub(super) fn describe_clearances(input: &Input) -> Result<String, Error> {
             name: names(*pair),
             description: String::new(),
             coordinate: Coordinate {
-                kind: CoordinateKind::Clearance(*pair, [Run::WHOLE; 2]),
+                kind: CoordinateKind::Clearance(*pair, [FeatureRun::WHOLE; 2]),
                 from,
                 to,
                 axes: from,
