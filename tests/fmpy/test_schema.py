@@ -53,6 +53,7 @@ WRONG = {
     "unknown-marker",
     "wheel-sizes",
     "wrong-type",
+    "wrong-type_law",
     "wrong-type_markers",
     "wrong-type_named",
     "wrong-type_points",

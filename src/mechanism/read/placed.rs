@@ -113,7 +113,7 @@ impl<'a> Context<'a> {
             return None;
         }
         let candidates: Vec<&str> = self.coordinates.iter().map(|(own, _)| *own).collect();
-        let message = format!("no measure or driver {}", quoted(name));
+        let message = format!("no measure, driver or freedom {}", quoted(name));
         let help = names::help(name, &candidates, &[]);
         self.error(code::UNKNOWN_COORDINATE, span.clone(), message)
             .help = help;

@@ -44,7 +44,7 @@ impl Parser<'_> {
         if left.len() + right.len() > 40 {
             return error.help("multiplication is written out");
         }
-        if let Some(help) = self.unit_help(right) {
+        if let Some(help) = self.unit_help(right, self.token.start) {
             return error.help(help);
         }
         error.help(format!("multiplication is written out: `{left}*{right}`"))
@@ -160,6 +160,7 @@ impl Parser<'_> {
             Some(moving) if !moving.dimensions.is_empty() => "parameter, driver or measure",
             _ => "parameter",
         };
+        let start = span.start;
         let error = ExpressionError::new(span, format!("no {nouns} {}", quoted(name)));
         if name == Variable::PolarAngle.name() {
             return error.help("only a cam's `profile` may use `theta`, its polar angle");
@@ -193,7 +194,7 @@ impl Parser<'_> {
                 .filter(|moving| !moving.dimensions.is_empty() || !moving.of_signals.is_empty());
             near.or_else(|| coordinates?.known.near(name, &[]))
         };
-        let help = self.unit_help(name).or_else(moving).or_else(taken);
+        let help = self.unit_help(name, start).or_else(moving).or_else(taken);
         let polar_angle = match (self.scope.variables, name) {
             ([Variable::PolarAngle], "phi" | "angle" | "alpha") => {
                 Some("did you mean `theta`?".to_owned())
@@ -248,16 +249,26 @@ impl Parser<'_> {
         }
     }
 
-    /// Returns help for a unit's symbol after a number.
-    fn unit_help(&self, name: &str) -> Option<String> {
+    /// Returns help for a unit's symbol that begins at a place, after a number.
+    fn unit_help(&self, name: &str, start: usize) -> Option<String> {
         if self.scope.parameters.get(name).is_some() {
             return None;
         }
-        match name {
-            "m" | "rad" | "s" | "kg" | "N" | "Nm" => {
+        let before = self.text[..start].trim_end_matches([' ', '*']);
+        let number = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+        let number = before[number.len()..].parse::<f64>().ok();
+        match (name, number) {
+            ("m", Some(metres)) if metres < 1.0 => {
+                // Without the rounding of a product in binary.
+                let millimetres = (metres * 1e15).round() / 1e12;
+                Some(format!(
+                    "numbers are in SI units: write `{metres}`, or `{millimetres}*mm`"
+                ))
+            }
+            ("m" | "rad" | "s" | "kg" | "N" | "Nm", _) => {
                 Some(format!("numbers are in SI units: leave out `{name}`"))
             }
-            "g" => Some("numbers are in SI units: a gram is `0.001`".to_owned()),
+            ("g", _) => Some("numbers are in SI units: a gram is `0.001`".to_owned()),
             _ => None,
         }
     }

@@ -44,6 +44,8 @@ fn errors_say_where_and_what_would_be_right() {
         "sim(a)",
         "lenght",
         "2*m",
+        "0.005*m",
+        "0.07 m",
         "0,5",
         "1.2.3",
         "1..2",

@@ -75,6 +75,11 @@ impl<'a> Kind<'a> for LawOfOneArgument {
     type Value = Law;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Law> {
+        let expected = "expected `law = \"x^2\"`, `law = { table = [[0, 0], [1, 2]] }` or `law = { file = \
+                        \"a.csv\" }`";
+        if context.is_points_alone(item, "law", expected) {
+            return None;
+        }
         if !item.value.get_ref().is_table() {
             let formula = context.formula(item.value, &[Variable::Argument(0)], None)?;
             return Some(Law::Expression(formula.expression, formula.dimension));

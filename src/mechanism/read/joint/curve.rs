@@ -51,6 +51,12 @@ impl<'a> Kind<'a> for PathPoints {
         if let Some(name) = item.value.get_ref().as_str() {
             return context.points_called(name, &item.span());
         }
+        if item.value.get_ref().is_array() {
+            let expected =
+                "expected `points = { table = [[0, 0], [0.1, 0.1]] }` or `points = \"track.csv\"`";
+            context.is_points_alone(item, "curve", expected);
+            return None;
+        }
         let fields = context.fields(item.span(), item.value, "the points".to_owned())?;
         let keys = context.table::<PointKeys<'a>>(&fields);
         context.fixed_points(keys)
