@@ -219,7 +219,7 @@ impl Sensitivity<'_> {
     fn varied(&self, signal: Signal) -> Varied {
         match signal {
             Signal::Body(body, component) => self.at.coordinate(3 * body.index() + component),
-            Signal::Marker(marker, component) => self.at.marker(marker).point[component],
+            Signal::Marker(marker, component) => self.at.point(marker)[component],
             Signal::Measure(index) => self.measures[index].along(&self.mechanism()),
             Signal::Motion(driver) => match &self.named[driver.index()] {
                 Some(own) => own.along(&self.mechanism()),
@@ -256,7 +256,8 @@ impl State {
         direction: &Direction,
     ) -> Result<Sensitivity<'a>, Error> {
         let mut factors = self.factorised(compiled)?;
-        let mut along = self.unsolved(compiled, rates, driver_rates, direction);
+        let bodies = compiled.system.varied();
+        let mut along = self.unsolved(compiled, rates, driver_rates, direction, bodies);
         self.solve_changes(compiled, &mut factors, &mut along, Order::Acceleration);
         self.keep_factors(compiled, factors);
         Ok(along)
@@ -276,11 +277,13 @@ impl State {
         mut each: impl FnMut(&Self, usize, &Sensitivity<'_>) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let mut factors = self.factorised(compiled)?;
+        let bodies = compiled.system.varied();
         let done = directions
             .iter()
             .enumerate()
             .try_for_each(|(k, direction)| {
-                let mut along = self.unsolved(compiled, rates, driver_rates, direction);
+                let bodies = bodies.clone();
+                let mut along = self.unsolved(compiled, rates, driver_rates, direction, bodies);
                 self.solve_changes(compiled, &mut factors, &mut along, Order::Acceleration);
                 each(self, k, &along)
             });
@@ -314,11 +317,13 @@ impl State {
         let is_solved = !is_at && !found.as_ref().is_some_and(has_all);
         let mut factors = is_solved.then(|| self.factorised(compiled)).transpose()?;
         let unknowns = self.pose.q.len();
+        let bodies = compiled.system.varied();
         let done = directions
             .iter()
             .enumerate()
             .try_for_each(|(k, direction)| {
-                let mut along = self.unsolved(compiled, rates, driver_rates, direction);
+                let bodies = bodies.clone();
+                let mut along = self.unsolved(compiled, rates, driver_rates, direction, bodies);
                 if let Some(factors) = &mut factors {
                     self.solve_changes(compiled, factors, &mut along, order);
                 }
@@ -387,7 +392,8 @@ impl State {
                 let mut factors = state.factorised(compiled)?;
                 for direction in directions {
                     let (rates, drivers) = (place.rates, place.driver_rates);
-                    let mut along = state.unsolved(compiled, rates, drivers, direction);
+                    let bodies = compiled.system.varied();
+                    let mut along = state.unsolved(compiled, rates, drivers, direction, bodies);
                     state.solve_changes(compiled, &mut factors, &mut along, highest);
                     for order in 0..orders {
                         values.extend((0..unknowns).map(|q| along.at.change_of(order, q)));
@@ -415,13 +421,15 @@ impl State {
         Ok(factors)
     }
 
-    /// Returns the motion along a direction, on which the bodies have no changes yet.
+    /// Returns the motion along a direction, on which the bodies have no changes yet; `at` is a
+    /// mechanism on such numbers.
     fn unsolved<'a>(
         &self,
         compiled: &'a CompiledMechanism,
         rates: &Rates,
         driver_rates: &[Jet],
         direction: &Direction,
+        mut at: VariedConfiguration,
     ) -> Sensitivity<'a> {
         let system = &compiled.system;
         let mechanism = system.mechanism();
@@ -459,8 +467,10 @@ impl State {
         let motion = motion
             .zip(rates.acceleration())
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
-        let mut at = system.varied();
-        system.vary_numbers(&mut at, &|number| Some(evaluate(number, &parameters)));
+        let fixed: Vec<_> = parameters.iter().map(|parameter| parameter.value).collect();
+        system.vary_numbers(&mut at, &|number| {
+            Some(Varied::fixed(evaluate(number, &fixed)))
+        });
         for (column, motion) in motion.enumerate() {
             let [value, first, second] = motion.map(Dual::constant);
             at.set_coordinate(column, Varied::new(value, [first, second]));
@@ -506,11 +516,17 @@ impl State {
             .collect();
         let mut side = vec![0.0; targets.len()];
         let mut change = vec![0.0; system.unknowns()];
+        // Without changes of q, numbers and curves no relation changes.
+        let stays = along.curves.is_empty() && !along.at.numbers_change();
         for order in 0..=highest as usize {
             let rows = system.equations().iter().zip(&targets);
             let varied = along.mechanism();
             for (side, (equation, target)) in side.iter_mut().zip(rows) {
-                let error = *target - equation.constraint.along(&varied);
+                let error = if stays && order == 0 {
+                    *target
+                } else {
+                    *target - equation.constraint.along(&varied)
+                };
                 *side = [error.value, error.first(), error.second()][order].first();
             }
             if along.fault.is_none()

@@ -36,7 +36,7 @@ impl Coincidence {
 impl Formula for Coincidence {
     fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let component = self.axis as usize;
-        at.marker(self.to).point[component] - at.marker(self.from).point[component]
+        at.point(self.to)[component] - at.point(self.from)[component]
     }
 }
 

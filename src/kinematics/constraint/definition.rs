@@ -92,9 +92,9 @@ where
 {
     let q = bodies.coordinate(column);
     // At rest but for a unit rate of this unknown, the rate of the relation is its derivative.
-    bodies.set_coordinate(column, Taylor::linear(q.value, S::constant(1.0)));
+    bodies.move_coordinate(column, Taylor::linear(q.value, S::constant(1.0)));
     let rate = relation.along(&VariedMechanism { bodies, curves });
-    bodies.set_coordinate(column, q);
+    bodies.move_coordinate(column, q);
     rate.first()
 }
 

@@ -37,7 +37,7 @@ impl Distance {
 
 impl Formula for Distance {
     fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
-        let [x, y] = subtract(at.marker(self.to).point, at.marker(self.from).point);
+        let [x, y] = subtract(at.point(self.to), at.point(self.from));
         x.hypot(y)
     }
 }

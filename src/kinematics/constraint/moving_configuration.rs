@@ -46,6 +46,11 @@ pub trait Bodies<N> {
     /// Returns a marker.
     fn marker(&self, marker: MarkerId) -> VariedMarker<N>;
 
+    /// Returns the point P of a marker.
+    fn point(&self, marker: MarkerId) -> [N; 2] {
+        self.marker(marker).point
+    }
+
     /// Returns a body's angle \[rad\], zero for ground.
     fn phi(&self, body: Option<BodyId>) -> N;
 
@@ -78,6 +83,13 @@ pub struct CurvesAlong {
     pub profiles: Vec<ProfileAlong>,
     /// The laws.
     pub laws: Vec<MotionInForce<Varied>>,
+}
+
+impl CurvesAlong {
+    /// Returns whether there are none.
+    pub(in crate::kinematics) fn is_empty(&self) -> bool {
+        self.profiles.is_empty() && self.laws.is_empty()
+    }
 }
 
 impl Moving for Varied {
@@ -355,6 +367,12 @@ impl<N: Number> VariedConfiguration<N> {
         }
     }
 
+    /// Returns a point of a body's frame.
+    fn placed(&self, body: usize, position: [N; 2]) -> [N; 2] {
+        let origin = [self.q[3 * body], self.q[3 * body + 1]];
+        add(origin, turned(self.axes[body], position))
+    }
+
     /// Returns a marker's point and angle in its body's frame.
     pub(in crate::kinematics) fn local(&self, marker: MarkerId) -> ([N; 2], N) {
         let frame = &self.frames[marker.index()];
@@ -377,12 +395,16 @@ impl<N: Number> Bodies<N> for VariedConfiguration<N> {
                 theta: angle,
             };
         };
-        let (k, turn) = (3 * body, self.axes[body]);
         VariedMarker {
-            point: add([self.q[k], self.q[k + 1]], turned(turn, position)),
-            axis: turned(turn, axis),
-            theta: self.q[k + 2] + angle,
+            point: self.placed(body, position),
+            axis: turned(self.axes[body], axis),
+            theta: self.q[3 * body + 2] + angle,
         }
+    }
+
+    fn point(&self, marker: MarkerId) -> [N; 2] {
+        let VariedFrame { body, position, .. } = self.frames[marker.index()];
+        body.map_or(position, |body| self.placed(body.index(), position))
     }
 
     fn phi(&self, body: Option<BodyId>) -> N {
@@ -438,12 +460,27 @@ impl VariedConfiguration<Enclosed> {
     }
 }
 
+impl<S: Number, const N: usize> VariedConfiguration<Taylor<S, N>> {
+    /// Sets q\[column\], whose value stays, and with it sine and cosine.
+    pub(super) fn move_coordinate(&mut self, column: usize, q: Taylor<S, N>) {
+        self.q[column] = q;
+        if column < 3 * self.bodies && column % 3 == 2 {
+            let axis = &mut self.axes[column / 3];
+            let [cos, sin] = axis.map(|component| component.value);
+            *axis = [
+                q.chain(cos, |_| [-sin, -cos, sin]),
+                q.chain(sin, |_| [cos, -sin, -cos]),
+            ];
+        }
+    }
+}
+
 impl VariedConfiguration {
     /// Returns the mechanism at rest, with the values that it has.
     pub(in crate::kinematics) fn at_rest(&self) -> Self {
         let mut still = self.clone();
         for column in 0..still.q.len() {
-            still.set_coordinate(column, Varied::fixed(still.q[column].value));
+            still.move_coordinate(column, Varied::fixed(still.q[column].value));
         }
         still
     }
@@ -453,8 +490,19 @@ impl VariedConfiguration {
         let zero = Dual::constant(0.0);
         for (column, rate) in rates.iter().enumerate() {
             let rates = [Dual::constant(*rate), zero];
-            self.set_coordinate(column, Varied::new(self.q[column].value, rates));
+            self.move_coordinate(column, Varied::new(self.q[column].value, rates));
         }
+    }
+
+    /// Returns whether a number in the relations changes along the direction.
+    pub(in crate::kinematics) fn numbers_change(&self) -> bool {
+        let of_frames = self.frames.iter().flat_map(|frame| {
+            let [x, y] = frame.position;
+            [x, y, frame.angle]
+        });
+        let of_cores = self.cores.iter().flat_map(|core| &core.numbers);
+        let mut numbers = of_frames.chain(self.coefficients.iter().chain(of_cores).copied());
+        numbers.any(|number| number.value.first() != 0.0)
     }
 
     /// Sets the changes of q (order 0), q̇ (order 1) or q̈ (order 2) along the direction.
@@ -478,7 +526,11 @@ impl VariedConfiguration {
                 _ => &mut q.derivatives[order - 1],
             };
             coefficient.derivatives = [change];
-            self.set_coordinate(column, q);
+            if order == 0 {
+                self.set_coordinate(column, q);
+            } else {
+                self.move_coordinate(column, q);
+            }
         }
     }
 
@@ -502,6 +554,12 @@ impl<N: Moving> VariedMechanism<'_, '_, N> {
     #[must_use]
     pub fn marker(&self, marker: MarkerId) -> VariedMarker<N> {
         self.bodies.marker(marker)
+    }
+
+    /// Returns the point of a marker.
+    #[must_use]
+    pub fn point(&self, marker: MarkerId) -> [N; 2] {
+        self.bodies.point(marker)
     }
 
     /// Returns a body's angle \[rad\], zero for ground.

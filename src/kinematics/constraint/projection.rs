@@ -33,7 +33,7 @@ impl Projection {
 
 impl Formula for Projection {
     fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
-        let d = subtract(at.marker(self.to).point, at.marker(self.from).point);
+        let d = subtract(at.point(self.to), at.point(self.from));
         dot(self.axis.of_varied(at.marker(self.axes).axis), d)
     }
 }

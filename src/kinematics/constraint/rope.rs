@@ -180,7 +180,7 @@ impl Formula for RopeLength {
         let mut before = [zero; 2];
         for ([from, to], part) in self.legs() {
             let part = at.coefficient(part);
-            let d = subtract(at.marker(to.marker).point, at.marker(from.marker).point);
+            let d = subtract(at.point(to.marker), at.point(from.marker));
             let distance = d[0].hypot(d[1]);
             if from.pulley.is_none() && to.pulley.is_none() {
                 sum += part * distance;

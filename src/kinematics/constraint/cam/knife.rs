@@ -86,7 +86,7 @@ fn angle<N: Moving>(x: N, y: N) -> N {
 impl Formula for KnifeEdge {
     fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let cam = at.marker(self.cam);
-        let [x, y] = subtract(at.marker(self.follower).point, cam.point);
+        let [x, y] = subtract(at.point(self.follower), cam.point);
         let theta = angle(x, y) - cam.theta;
         let [radius, _] = at.radius(self.profile, theta);
         x.hypot(y) - radius

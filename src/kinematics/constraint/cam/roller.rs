@@ -69,7 +69,7 @@ impl Roller {
 impl Formula for Roller {
     fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let (cam, arm, tangent) = self.contour.along(at);
-        let centre = at.marker(self.follower).point;
+        let centre = at.point(self.follower);
         let e = subtract(centre, add(cam.point, arm));
         match self.axis {
             Axis::X => dot(e, tangent),
