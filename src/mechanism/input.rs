@@ -1,6 +1,9 @@
 //! Inputs: numbers that come from outside while a mechanism moves.
 
-use super::{Driver, DriverSource, Expression, Load, Mechanism, PrescribedMotion, Unit};
+use super::{
+    Driver, DriverSource, Expression, Load, Mechanism, Number, ParameterId, PrescribedMotion, Unit,
+    Variable,
+};
 
 /// A number that comes from outside, such as a voltage: an FMI input.
 #[derive(Clone, Debug)]
@@ -81,6 +84,16 @@ impl Mechanism {
     pub fn give_load(&mut self, target: LoadTarget, size: Expression) -> bool {
         match target {
             LoadTarget::Input(index) => {
+                for driver in &mut self.drivers {
+                    let Some(follows) = &driver.follows else {
+                        continue;
+                    };
+                    let given = follows.with_inputs(|input| (input == index).then(|| size.clone()));
+                    if given.is_none() {
+                        return false;
+                    }
+                    driver.follows = given;
+                }
                 self.inputs[index].given = Some(size);
                 self.resolve_motions()
             }
@@ -91,21 +104,34 @@ impl Mechanism {
         }
     }
 
-    /// Makes the motions of drivers that follow inputs those for what these are given, or for their values
-    /// at the start.
+    /// Returns whether a driver follows an input, by its index.
+    #[must_use]
+    pub fn has_followers(&self, input: usize) -> bool {
+        let followed = self
+            .drivers
+            .iter()
+            .filter_map(|driver| driver.follows.as_ref());
+        followed
+            .flat_map(Expression::inputs)
+            .any(|index| index == input)
+    }
+
+    /// Sets the value of an input at the start; the motions of drivers that follow it start there.
+    pub fn set_input_start(&mut self, input: usize, start: f64) {
+        self.inputs[input].start = start;
+        let is_possible = self.resolve_motions();
+        debug_assert!(is_possible, "a number is nested as an input is");
+    }
+
+    /// Makes the motions of drivers that follow inputs those for the values of these at the start.
     fn resolve_motions(&mut self) -> bool {
         let inputs = &self.inputs;
-        let in_place = |index: usize| {
-            let Input { given, start, .. } = &inputs[index];
-            given
-                .clone()
-                .unwrap_or_else(|| Expression::constant(*start))
-        };
+        let start = |index: usize| Some(Expression::constant(inputs[index].start));
         self.drivers.iter_mut().all(|driver| {
             let Some(follows) = &driver.follows else {
                 return true;
             };
-            let motion = follows.with_inputs(in_place);
+            let motion = follows.with_inputs(start);
             let is_possible = motion.is_some();
             if let Some(motion) = motion {
                 driver.source = DriverSource::Motion(PrescribedMotion::Expression(motion));
@@ -114,17 +140,30 @@ impl Mechanism {
         })
     }
 
-    /// Returns the driver whose motion follows an input, if there is one.
-    #[must_use]
-    pub fn follower(&self, target: LoadTarget) -> Option<&Driver> {
-        let LoadTarget::Input(input) = target else {
-            return None;
-        };
-        let mut drivers = self.drivers.iter();
-        drivers.find(|driver| {
+    /// Gives the drivers that follow an input of these from outside, as those that are inputs: a host tells
+    /// what they [follow](Driver::followed). Each starts at its motion's value at a time \[s\].
+    pub fn give_followers(
+        &mut self,
+        is_given: impl Fn(usize) -> bool,
+        parameters: &[f64],
+        time: f64,
+    ) {
+        for driver in &mut self.drivers {
             let mut inputs = driver.follows.iter().flat_map(Expression::inputs);
-            inputs.any(|index| index == input)
-        })
+            if inputs.any(&is_given)
+                && let DriverSource::Motion(PrescribedMotion::Expression(motion)) = &driver.source
+            {
+                let start = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
+                driver.source = DriverSource::Input { start };
+            }
+        }
+    }
+
+    /// Returns the place of an input among the loads, if nothing else gives it.
+    #[must_use]
+    pub fn input_place(&self, input: usize) -> usize {
+        let before = self.inputs[..input].iter();
+        before.filter(|input| input.given.is_none()).count()
     }
 
     /// Returns the places among the loads of the inputs, and of the first component of each force: `None`
@@ -158,5 +197,29 @@ impl Mechanism {
         for (load, input) in loads.iter_mut().zip(self.load_inputs()) {
             *load = input.start;
         }
+    }
+}
+
+impl Driver {
+    /// Returns whether it follows inputs whose values a host tells, and is given from outside itself.
+    #[must_use]
+    pub fn is_moved_by_inputs(&self) -> bool {
+        self.is_given() && self.follows.is_some()
+    }
+
+    /// Returns the value of its motion for these values of inputs, by their indices; `None` unless it
+    /// follows some. On jets with their rates. Allocates nothing.
+    pub fn followed<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        input: &impl Fn(usize) -> N,
+        time: N,
+    ) -> Option<N> {
+        let follows = self.follows.as_ref()?;
+        let variable = |which| match which {
+            Variable::Input(index) => input(index),
+            _ => time,
+        };
+        Some(follows.evaluate_at(parameter, &variable))
     }
 }

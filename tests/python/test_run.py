@@ -231,6 +231,71 @@ def test_inputs_have_columns(mechanism):
         mechanism("wiper_motor").run(t=1 + t, drive={"voltage": 1 + t})
 
 
+FOLLOWER = """
+format = 1
+name = "follower"
+[parameters]
+gain = 2
+[inputs]
+setpoint = { start = 0.1 }
+[ground.markers]
+O = [0, 0]
+[bodies.block]
+markers = { B = [0, 0] }
+mass = 2
+[joints]
+guide = { type = "translational", markers = ["ground.O", "block.B"] }
+[drivers]
+x = { coordinate = "x", markers = ["ground.O", "block.B"], motion = "gain*setpoint" }
+"""
+
+
+def test_a_driver_that_follows_an_input_takes_its_array():
+    follower = biela.loads(FOLLOWER)
+    driven = biela.loads(re.sub(r"(?s)\[parameters].*(?=\[ground)", "", FOLLOWER).replace('motion = "gain*setpoint"', "start = 0.2"))
+    t = np.linspace(0, 1, 21)
+    setpoint = 0.1 + 0.3 * np.sin(2 * t)
+    variables = ["block.x", "block.vx", "block.ax", "x.effort"]
+    found = follower.run(t=t, drive={"setpoint": setpoint}, variables=variables, gradient=["gain"])
+    truth = driven.run(t=t, drive={"x": 2 * setpoint}, variables=variables)
+    for name in variables:
+        assert_allclose(found[name], truth[name], rtol=1e-13, atol=1e-13)
+        # The motion is in proportion to the gain.
+        assert_allclose(found.gradient[name, "gain"], found[name] / 2, rtol=1e-13, atol=1e-13)
+    # Rates that are given count, and the chain rule makes those of a square.
+    square = biela.loads(FOLLOWER.replace("gain*setpoint", "gain*setpoint^2"))
+    s, v, a = np.array([0.1, 0.4]), np.array([1.0, -2.0]), np.array([3.0, 0.5])
+    at = square.run(drive={"setpoint": (s, v, a)}, variables=variables)
+    assert_allclose(at["block.vx"], 4 * s * v, rtol=1e-14)
+    assert_allclose(at["block.ax"], 4 * (v * v + s * a), rtol=1e-14)
+    swept = follower.sweep({"gain": [2.0, 3.0]}, t=t, drive={"setpoint": setpoint}, variables=variables)
+    assert_allclose(swept["block.x"], np.outer([2.0, 3.0], setpoint), rtol=1e-13)
+    # The driver's own entry goes before what it follows.
+    own = follower.run(t=t, drive={"x": 2 * setpoint, "setpoint": 0 * t}, variables=variables)
+    assert_allclose(own["block.x"], truth["block.x"], rtol=1e-13)
+
+
+def test_a_free_motion_has_no_gradient_by_what_follows_arrays():
+    free = FOLLOWER + """
+[bodies.bob]
+markers = { B = [0, 0] }
+mass = 1
+[joints.rail]
+type = "translational"
+markers = ["block.B", "bob.B"]
+[freedoms]
+slip = { coordinate = "x", markers = ["block.B", "bob.B"], start = 0 }
+"""
+    t = np.linspace(0, 1, 21)
+    # Nothing pushes the bob, which keeps the velocity that it begins with.
+    drive = {"setpoint": (0.1 + 0.3 * np.sin(2 * t), 0.6 * np.cos(2 * t), -1.2 * np.sin(2 * t))}
+    mechanism = biela.loads(free)
+    moved = mechanism.run(t=t, drive=drive, variables=["bob.x"])
+    assert_allclose(moved["bob.x"], 0.2 + 1.2 * t, rtol=1e-8)
+    with pytest.raises(biela.UsageError, match="driver `x` follows an input with an array"):
+        mechanism.run(t=t, drive=drive, variables=["bob.x"], gradient=["gain"])
+
+
 def test_the_start_of_a_freedom_is_set(mechanism):
     pendulum = mechanism("pendulum_free")
     t = [0.0, 0.1, 0.5]

@@ -60,6 +60,9 @@ export class Live {
     }
     this.refused = answer.assembles ? request : null;
     this.tellOutcome(answer);
+    if (request.do === "load") {
+      this.rowOf(request).set(answer.value);
+    }
     this.draw();
     return answer.outcome === "reached";
   }
@@ -244,9 +247,11 @@ export class Live {
     const place = this.find(".rate-rows");
     place.replaceChildren();
     const row = (item, low, high, value, set) => {
-      const made = new Row(place, item, { low, high }, (next) => {
-        made.set(next);
-        set(next);
+      const made = new Row(place, item, { low, high }, (next, done) => {
+        if (!item.moves) {
+          made.set(next);
+        }
+        set(next, done);
       });
       made.set(value);
       return made;
@@ -278,14 +283,17 @@ export class Live {
         }
       }
     });
-    page.loads.forEach((load, index) =>
-      row(load, -load.largest, load.largest, load.value, (value) => this.give({ do: "load", input: index, value })),
+    this.loads = page.loads.map((load, index) =>
+      row(load, -load.largest, load.largest, load.value, (value, done) => {
+        const request = { do: "load", input: index, value };
+        load.moves ? this.slide(request, done) : this.give(request);
+      }),
     );
     this.find(".rate-part").hidden = place.childElementCount === 0;
   }
 
   /**
-   * Gives speeds or loads, which move nothing.
+   * Gives speeds, or loads that move nothing.
    * @param {import("./messages").PageRequest} request
    */
   give(request) {
@@ -296,7 +304,7 @@ export class Live {
 
   /**
    * A slider moves: solves at once, and draws anew what parameters change.
-   * @param {import("./messages").PageRequest & { do: "drive" | "set" }} request
+   * @param {import("./messages").PageRequest & { do: "drive" | "set" | "load" }} request
    */
   slide(request, done) {
     if (!this.sliding) {
@@ -304,7 +312,7 @@ export class Live {
       this.keep();
       this.sliding = true;
     }
-    const row = request.do === "set" ? this.parameters[request.parameter] : this.drivers[request.driver];
+    const row = this.rowOf(request);
     // The end of a slide is no move: what stopped it remains to be read.
     const reached = request.value === row.value || this.move(request);
     if (request.do === "set" && reached) {
@@ -313,6 +321,21 @@ export class Live {
     if (done) {
       this.sliding = false;
       this.settle();
+    }
+  }
+
+  /**
+   * The row whose slider asks for a move.
+   * @param {import("./messages").PageRequest & { do: "drive" | "set" | "load" }} request
+   */
+  rowOf(request) {
+    switch (request.do) {
+      case "set":
+        return this.parameters[request.parameter];
+      case "load":
+        return this.loads[request.input];
+      default:
+        return this.drivers[request.driver];
     }
   }
 

@@ -15,7 +15,7 @@ export type PageRequest =
   | { do: "drive"; driver: number; value: number }
   // Sets the rates of a driver.
   | { do: "speed"; driver: number; velocity: number; acceleration: number }
-  // Sets an input of a force.
+  // Sets an input, or that of a force; answers an outcome, and the `value` reached.
   | { do: "load"; input: number; value: number }
   // Goes to a time; answers an outcome.
   | { do: "time"; value: number }

@@ -7,7 +7,7 @@ use biela::dynamics::{self, Equilibrium, Event, Given, Motion, Notice, StateSpac
 use biela::kinematics::{
     Blocked, Direction, DriverPath, Error, Output, OutputSource, Path, Pose, Solver, SolverChoices,
 };
-use biela::mechanism::{DriverId, Jet, Order, show_time};
+use biela::mechanism::{Driver, DriverId, Dual, Jet, Order, show_time};
 
 use crate::call::Interrupt;
 use crate::error::Failure;
@@ -26,6 +26,8 @@ pub(crate) struct Runner {
     choices: SolverChoices,
     /// The drivers' values at the start, at which those without samples stay.
     held: Vec<f64>,
+    /// The row whose rates were solved last.
+    solved: usize,
 }
 
 impl Runner {
@@ -40,6 +42,17 @@ impl Runner {
         columns: &[Output],
         directions: &[Direction],
     ) -> Result<Self, Failure> {
+        let mut drivers = scenario.driven.drivers.iter();
+        if let Some(driver) = drivers.find(|driver| driver.is_moved_by_inputs())
+            && scenario.driven.has_freedoms()
+            && !directions.is_empty()
+        {
+            return Err(Failure::Usage(format!(
+                "gradient: driver `{}` follows an input with an array, along which a free motion has none; \
+                 give the input an expression",
+                driver.name
+            )));
+        }
         let home = Solver::new(scenario.own.clone())?;
         let mut motion = Motion::new(Solver::new(scenario.driven.clone())?);
         if columns.iter().any(Output::uses_forces) {
@@ -54,6 +67,7 @@ impl Runner {
             choices: SolverChoices::default(),
             motion,
             held: Vec::new(),
+            solved: 0,
         })
     }
 
@@ -92,6 +106,7 @@ impl Runner {
         let part = Part {
             scenario: &self.scenario,
             held: &self.held,
+            parameters: &self.path.to,
             row: 1,
         };
         self.motion.release(&part).map_err(stopped)?;
@@ -105,7 +120,7 @@ impl Runner {
         let Scenario { driven, home, .. } = &self.scenario;
         self.home.resume(&home.0, &home.1);
         let home = &home.0;
-        let value = |driver| Some(self.sample(driver, 0)?.value);
+        let value = |driver| Some(self.scenario.sample(driver, 0, parameters)?.value);
         let path = (self.home).path_to_start(driven, parameters, self.scenario.start, value);
         self.home.start(home, &path)?;
         self.home.copy_choices(&mut self.choices);
@@ -132,6 +147,7 @@ impl Runner {
         let part = Part {
             scenario: &self.scenario,
             held: &self.held,
+            parameters: &self.path.to,
             row,
         };
         let advanced = self.motion.advance(&self.path, &part, time);
@@ -208,9 +224,8 @@ impl Runner {
                 continue;
             }
             let now = pose.drivers[index];
-            let driver = DriverId(index);
-            let samples = self.scenario.samples.iter().find(|s| s.driver == driver);
-            let value = samples.map_or(now, |samples| samples.at(row).value);
+            let sample = self.scenario.sample(DriverId(index), row, &self.path.to);
+            let value = sample.map_or(now, |sample| sample.value);
             *driver_path = DriverPath::held(value, now);
         }
     }
@@ -262,6 +277,7 @@ impl Runner {
         let part = Part {
             scenario: &self.scenario,
             held: &self.held,
+            parameters: &self.path.to,
             row: 0,
         };
         (&mut self.motion, part)
@@ -296,8 +312,7 @@ impl Runner {
     }
 
     fn sample(&self, driver: DriverId, row: usize) -> Option<Jet> {
-        let samples = self.scenario.samples.iter().find(|s| s.driver == driver)?;
-        Some(samples.at(row))
+        self.scenario.sample(driver, row, &self.path.to)
     }
 
     /// Returns the value of a column \[SI\].
@@ -328,6 +343,7 @@ impl Runner {
         directions: &[Direction],
         derivatives: &mut Vec<f64>,
     ) -> Result<(), Error> {
+        let directions = &*self.with_followers(directions);
         let Motion {
             solver, solution, ..
         } = &mut self.motion;
@@ -357,6 +373,27 @@ impl Runner {
         )
     }
 
+    /// Returns directions with the changes of drivers that follow inputs.
+    fn with_followers<'a>(&self, directions: &'a [Direction]) -> Cow<'a, [Direction]> {
+        let Scenario { own, driven, .. } = &self.scenario;
+        let mut all = driven.drivers.iter();
+        if !all.any(Driver::is_moved_by_inputs) {
+            return Cow::Borrowed(directions);
+        }
+        let completed = directions.iter().map(|direction| {
+            let mut direction = direction.clone();
+            let now = self.path.to.iter().zip(&direction.parameters);
+            let mut parameters: Vec<Dual> = now.map(|(&is, &by)| Dual::new(is, [by])).collect();
+            own.derive_parameters(&mut parameters);
+            for (driver, change) in direction.drivers.iter_mut().enumerate() {
+                let followed = (self.scenario).change(DriverId(driver), self.solved, &parameters);
+                *change = followed.unwrap_or(*change);
+            }
+            direction
+        });
+        Cow::Owned(completed.collect())
+    }
+
     /// Solves rates and forces at the pose of a row.
     ///
     /// # Errors
@@ -364,17 +401,25 @@ impl Runner {
     /// They do not exist at a singular position.
     pub(crate) fn solve(&mut self, row: usize) -> Result<(), Error> {
         let Self {
-            motion, scenario, ..
+            motion,
+            scenario,
+            path,
+            solved,
+            ..
         } = self;
         motion.take_rates();
-        for (place, sizes) in &scenario.loads {
+        for (place, [sizes, ..]) in &scenario.loads {
             if let Some(load) = motion.solution.loads.get_mut(*place) {
                 *load = sizes[row];
             }
         }
-        for samples in &scenario.samples {
-            motion.solution.driver_rates[samples.driver.index()] = samples.at(row);
+        let rates = motion.solution.driver_rates.iter_mut().enumerate();
+        for (driver, rates) in rates {
+            if let Some(sample) = scenario.sample(DriverId(driver), row, &path.to) {
+                *rates = sample;
+            }
         }
+        *solved = row;
         motion.solve()
     }
 }
@@ -384,6 +429,7 @@ impl Runner {
 struct Part<'a> {
     scenario: &'a Scenario,
     held: &'a [f64],
+    parameters: &'a [f64],
     /// The later row.
     row: usize,
 }
@@ -406,17 +452,18 @@ impl Part<'_> {
 
 impl Given for Part<'_> {
     fn driver(&self, driver: DriverId, time: f64) -> Jet {
-        let Some(samples) = self.scenario.samples.iter().find(|s| s.driver == driver) else {
+        let (rows, h, s) = self.rows(time);
+        let [Some(from), Some(to)] =
+            rows.map(|row| self.scenario.sample(driver, row, self.parameters))
+        else {
             return Jet::constant(self.held[driver.index()]);
         };
-        let (rows, h, s) = self.rows(time);
-        let [from, to] = rows.map(|row| samples.at(row));
         on_cubic(from, to, h, s)
     }
 
     fn loads(&self, time: f64, loads: &mut [f64]) {
         let ([earlier, later], _, s) = self.rows(time);
-        for (place, sizes) in &self.scenario.loads {
+        for (place, [sizes, ..]) in &self.scenario.loads {
             loads[*place] = sizes[earlier] + s * (sizes[later] - sizes[earlier]);
         }
     }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use biela::kinematics::{Pose, SolverChoices};
 use biela::mechanism::{
-    DriverId, DriverSource, Expression, Jet, Mechanism, Order, ParameterId, PrescribedMotion,
-    Variable, whole_angles,
+    DriverId, DriverSource, Dual, Expression, Jet, Mechanism, Number, Order, ParameterId,
+    PrescribedMotion, Taylor, Variable, whole_angles,
 };
 use biela_tools::cli::{check_parameter, parameter_value, unknown_name};
 use pyo3::prelude::*;
@@ -68,8 +68,8 @@ pub(crate) struct Scenario {
     /// Times of the rows \[s\], ascending; at least one.
     pub(crate) times: Vec<f64>,
     pub(crate) samples: Vec<Samples>,
-    /// Sizes of inputs of forces at the times, by their places.
-    pub(crate) loads: Vec<(usize, Vec<f64>)>,
+    /// Sizes of inputs at the times with their rates, by their places.
+    pub(crate) loads: Vec<(usize, [Vec<f64>; 3])>,
 }
 
 /// Value or velocity of a freedom at the start \[SI\].
@@ -98,6 +98,52 @@ impl Scenario {
         samples
             .map(|(index, _)| ArrayPlace::Samples(index))
             .or_else(|| loads().map(ArrayPlace::Loads))
+    }
+
+    /// Returns value, velocity and acceleration at a time, by its index, of a driver that has samples, or
+    /// follows inputs that have some.
+    pub(crate) fn sample(&self, driver: DriverId, row: usize, parameters: &[f64]) -> Option<Jet> {
+        let mut samples = self.samples.iter();
+        if let Some(samples) = samples.find(|samples| samples.driver == driver) {
+            return Some(samples.at(row));
+        }
+        let parameter = |id: ParameterId| Jet::constant(parameters[id.index()]);
+        self.followed(driver, row, &parameter, |jet| jet)
+    }
+
+    /// Returns the change of [`sample`](Self::sample) along a direction of parameters, whose values come
+    /// with their changes; zero where samples give it.
+    pub(crate) fn change(&self, driver: DriverId, row: usize, parameters: &[Dual]) -> Option<Jet> {
+        let constant = |x: f64| Dual::constant(x);
+        let parameter = |id: ParameterId| Taylor::new(parameters[id.index()], [constant(0.0); 2]);
+        let varied = |jet: Jet| Taylor::new(constant(jet.value), jet.derivatives.map(constant));
+        let followed: Taylor<Dual, 2> = self.followed(driver, row, &parameter, varied)?;
+        let rates = followed.derivatives.map(|rate| rate.first());
+        Some(Jet::new(followed.value.first(), rates))
+    }
+
+    /// Returns what a driver follows at a time, by its index, on numbers that are made of jets.
+    fn followed<N: Number>(
+        &self,
+        driver: DriverId,
+        row: usize,
+        parameter: &impl Fn(ParameterId) -> N,
+        number: impl Fn(Jet) -> N,
+    ) -> Option<N> {
+        let driver = &self.driven.drivers[driver.index()];
+        if !driver.is_moved_by_inputs() {
+            return None;
+        }
+        let input = |index: usize| {
+            let place = self.driven.input_place(index);
+            let mut loads = self.loads.iter();
+            let jet = match loads.find(|(load, _)| *load == place) {
+                Some((_, [size, first, second])) => Jet::new(size[row], [first[row], second[row]]),
+                None => Jet::constant(self.driven.inputs[index].start),
+            };
+            number(jet)
+        };
+        driver.followed(parameter, &input, number(Jet::variable(self.times[row])))
     }
 
     /// Returns warnings of angles that look like degrees.
@@ -186,7 +232,7 @@ impl Scenario {
         check_times(&times)?;
         let mut driven = Mechanism::clone(own);
         let mut samples = Vec::new();
-        let mut loads: Vec<(String, Vec<f64>)> = Vec::new();
+        let mut loads: Vec<(String, [Vec<f64>; 3])> = Vec::new();
         let inputs = own.load_inputs();
         for (name, drive) in drives {
             if let Some(place) = inputs.iter().position(|input| input.name == name) {
@@ -201,15 +247,7 @@ impl Scenario {
                     }
                     Drive::Samples(orders) => {
                         check_samples(&name, &orders, times.len())?;
-                        if let Some(driver) = own.follower(input.target) {
-                            return Err(Failure::Usage(format!(
-                                "drive: driver `{}` follows the input `{name}`, which takes an \
-                                 expression, no array",
-                                driver.name
-                            )));
-                        }
-                        let [sizes, ..] = orders;
-                        loads.push((name, sizes));
+                        loads.push((name, orders));
                     }
                 }
                 continue;
@@ -223,6 +261,7 @@ impl Scenario {
                     unknown_name("driver", &name, &names)
                 )));
             };
+            driven.drivers[driver.index()].follows = None;
             driven.drivers[driver.index()].source = match drive {
                 Drive::Text(text) => {
                     DriverSource::Motion(PrescribedMotion::Expression(expression(own, &text)?))
@@ -240,13 +279,21 @@ impl Scenario {
         } else {
             times[0]
         };
+        let loads = places(&driven, loads);
+        let has_array: Vec<bool> = (driven.inputs.iter().enumerate())
+            .map(|(index, input)| {
+                let place = driven.input_place(index);
+                input.given.is_none() && loads.iter().any(|(load, _)| *load == place)
+            })
+            .collect();
+        driven.give_followers(|input| has_array[input], &own.default_parameters(), start);
         let scenario = Self {
             own: Arc::clone(own),
             home: Arc::clone(home),
             start,
             times,
             samples,
-            loads: places(&driven, loads),
+            loads,
             driven: Arc::new(driven),
         };
         scenario.check_free()?;
@@ -255,7 +302,7 @@ impl Scenario {
 }
 
 /// Returns the sizes of inputs of forces by their places among those of the driven mechanism.
-fn places(driven: &Mechanism, loads: Vec<(String, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
+fn places(driven: &Mechanism, loads: Vec<(String, [Vec<f64>; 3])>) -> Vec<(usize, [Vec<f64>; 3])> {
     let inputs = driven.load_inputs();
     let placed = loads.into_iter().filter_map(|(name, sizes)| {
         let place = inputs.iter().position(|input| input.name == name)?;

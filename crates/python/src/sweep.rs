@@ -157,7 +157,8 @@ impl Variants<'_> {
             match *place {
                 ArrayPlace::Samples(index) => runner.scenario.samples[index].take(orders),
                 ArrayPlace::Loads(index) => {
-                    runner.scenario.loads[index].1.copy_from_slice(orders[0])
+                    let own = runner.scenario.loads[index].1.iter_mut().zip(orders);
+                    own.for_each(|(own, order)| own.copy_from_slice(order));
                 }
             }
         }

@@ -8,10 +8,7 @@ use std::sync::Arc;
 use super::{Interface, MechanismModel};
 use crate::fmi::state::Phase;
 use crate::kinematics::{Direction, Error};
-use crate::mechanism::{
-    DriverId, DriverSource, Dual, Expression, Jet, Mechanism, Number, Order, ParameterId,
-    PrescribedMotion, Variable,
-};
+use crate::mechanism::{DriverId, Dual, Expression, Jet, Mechanism, Number, Order, ParameterId};
 
 /// Returns a mechanism whose drivers that follow inputs are given, with their values at the start.
 ///
@@ -30,17 +27,9 @@ pub(super) fn with_followers(
         let driver = first.name.clone();
         return Err(Error::FollowsInput { driver });
     }
-    let parameters = mechanism.default_parameters();
-    let time = mechanism.simulation.start;
     let mut given = Mechanism::clone(&mechanism);
-    for driver in &mut given.drivers {
-        if let (Some(_), DriverSource::Motion(PrescribedMotion::Expression(motion))) =
-            (&driver.follows, &driver.source)
-        {
-            let start = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
-            driver.source = DriverSource::Input { start };
-        }
-    }
+    let parameters = mechanism.default_parameters();
+    given.give_followers(|_| true, &parameters, mechanism.simulation.start);
     Ok(Arc::new(given))
 }
 
@@ -59,13 +48,12 @@ impl MechanismModel {
                 continue;
             };
             let (parameters, loads) = (&self.course.parameters, &self.course.force_inputs);
-            let variable = |which| match which {
-                // Inputs come first among the loads.
-                Variable::Input(input) => loads[input].path(),
-                _ => Jet::variable(time),
-            };
             let parameter = |p: ParameterId| Jet::constant(parameters[p.index()]);
-            let jet = follows.evaluate_at(&parameter, &variable);
+            // Inputs come first among the loads.
+            let path = |input: usize| loads[input].path();
+            let Some(jet) = driver.followed(&parameter, &path, Jet::variable(time)) else {
+                continue;
+            };
             let has_rates = follows.inputs().any(|input| loads[input].path().varies());
             let input = &mut self.course.inputs[index];
             input.set(Order::Position, jet.value);
@@ -90,18 +78,16 @@ impl MechanismModel {
             parameters[id.index()] = expression.evaluate(&value, Dual::constant(0.0));
         }
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            let Some(follows) = &driver.follows else {
+            let parameter = |p: ParameterId| parameters[p.index()];
+            let present = |input: usize| {
+                let value = self.course.force_inputs[input].present();
+                Dual::new(value, [loads[input]])
+            };
+            let time = Dual::new(self.course.time, [direction.time]);
+            let Some(followed) = driver.followed(&parameter, &present, time) else {
                 continue;
             };
-            let variable = |which| match which {
-                Variable::Input(input) => {
-                    let value = self.course.force_inputs[input].present();
-                    Dual::new(value, [loads[input]])
-                }
-                _ => Dual::new(self.course.time, [direction.time]),
-            };
-            let parameter = |p: ParameterId| parameters[p.index()];
-            let change = follows.evaluate_at(&parameter, &variable).first();
+            let change = followed.first();
             let by = self.derivatives_by(DriverId(index), Order::Position, phase);
             let own = &mut direction.drivers[index];
             own.value += by[0] * change;

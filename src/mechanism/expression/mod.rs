@@ -511,14 +511,18 @@ impl Expression {
         })
     }
 
-    /// Returns the expression with an expression in the place of each input; `None` if that is nested too
-    /// deeply.
-    pub(in crate::mechanism) fn with_inputs(&self, of: impl Fn(usize) -> Self) -> Option<Self> {
+    /// Returns the expression with these expressions in the places of inputs that have one; `None` if that
+    /// is nested too deeply.
+    pub(in crate::mechanism) fn with_inputs(
+        &self,
+        of: impl Fn(usize) -> Option<Self>,
+    ) -> Option<Self> {
         let mut program = Vec::new();
         let mut functions = self.functions.clone();
         for operation in &self.program {
-            if let Operation::Variable(Variable::Input(index)) = operation {
-                let given = of(*index);
+            if let Operation::Variable(Variable::Input(index)) = operation
+                && let Some(given) = of(*index)
+            {
                 program.extend_from_slice(&given.program);
                 functions = functions.or(&given.functions);
             } else {

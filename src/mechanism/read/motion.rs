@@ -167,7 +167,10 @@ impl<'a> Context<'a> {
         let motion = match written {
             WrittenMotion::Expression(expression) if expression.inputs().next().is_some() => {
                 let starts = &self.input_starts;
-                let start = |index| Expression::constant(starts.get(index).copied().unwrap_or(0.0));
+                let start = |index| {
+                    let start = starts.get(index).copied().unwrap_or(0.0);
+                    Some(Expression::constant(start))
+                };
                 let motion = expression.with_inputs(start)?;
                 follows = Some(expression);
                 PrescribedMotion::Expression(motion)

@@ -4,9 +4,9 @@ use super::given::conditions::Scenario;
 use super::given::input::warn_of_misfits;
 use super::given::signals::Signals;
 use super::told::message::Message;
-use biela::dynamics::{self, Event, Motion, Notice};
+use biela::dynamics::{self, Event, Given, Motion, Notice};
 use biela::kinematics::{DriverPath, Error, Path, Solver};
-use biela::mechanism::{DriverId, show_time};
+use biela::mechanism::{DriverId, Jet, show_time};
 
 /// A mechanism in motion, the signals that move it, and what is told of it.
 pub(super) struct SignalledMotion {
@@ -91,7 +91,7 @@ impl SignalledMotion {
             let start = self.motion.pose().time;
             self.go(self.signals.next_point(start).min(time))?;
             // A signal that jumps here moves its driver at once.
-            if self.motion.free().is_none() && self.aim() {
+            if self.motion.free().is_none() && self.aim(self.motion.pose().time) {
                 self.go(self.motion.pose().time)?;
             }
         }
@@ -101,7 +101,7 @@ impl SignalledMotion {
 
     /// Moves on to a time that is not beyond the next point of the signals.
     fn go(&mut self, until: f64) -> Result<(), String> {
-        self.aim();
+        self.aim(until);
         let pose = self.motion.pose();
         self.path.start = pose.time;
         self.path.duration = until - pose.time;
@@ -149,11 +149,13 @@ impl SignalledMotion {
         });
     }
 
-    /// Sets the curves of the drivers that follow signals, from the current time on. Returns
+    /// Sets the curves of the drivers that follow signals, from the current time on up to another. Returns
     /// whether a driver is off its signal.
-    fn aim(&mut self) -> bool {
+    fn aim(&mut self, until: f64) -> bool {
         let pose = self.motion.pose();
         let mut is_off = false;
+        let h = until - pose.time;
+        let part = self.signals.part(pose.time, &pose.drivers);
         let driver_paths = self.path.driver_paths.iter_mut().zip(&pose.drivers);
         for (driver, (driver_path, value)) in driver_paths.enumerate() {
             let Some(signal) = self.signals.line(DriverId(driver), pose.time) else {
@@ -165,6 +167,14 @@ impl SignalledMotion {
                 acceleration: 0.0,
                 jump: value - signal.value,
             };
+            if h > 0.0 && self.signals.moves_by_inputs(DriverId(driver)) {
+                // Exact at both ends, and between them where it follows lines by a polynomial.
+                let end = part.driver(DriverId(driver), until);
+                let by_part =
+                    |value: f64, at: Jet| Jet::new(value, [h * at.first(), h * h * at.second()]);
+                *driver_path =
+                    DriverPath::through(by_part(*value, signal), by_part(end.value, end));
+            }
             // Far less than any mechanism moves by, far more than rounding.
             is_off |= (value - signal.value).abs() > 1e-12 * (1.0 + value.abs());
         }

@@ -81,11 +81,9 @@ impl Session {
             }));
         }
         let largest = largest_load(mechanism, &pose.parameters);
-        let loads: Vec<Value> = (mechanism
-            .load_inputs()
-            .iter()
-            .zip(&self.motion.solution.loads))
-        .map(|(input, load)| {
+        let loads = self.own.load_inputs().into_iter().enumerate();
+        let loads = loads.filter_map(|(place, input)| {
+            let load = self.load(place)?;
             // The slider of an input reaches as far as its limits, or some starts.
             let limits = input.limits.iter().flatten();
             let reach = limits.fold(input.start.abs(), |most, limit| most.max(limit.abs()));
@@ -94,16 +92,18 @@ impl Session {
                 LoadTarget::Input(_) if reach > 0.0 => reach,
                 LoadTarget::Input(_) => 1.0,
             };
-            json!({
+            let is_input = matches!(input.target, LoadTarget::Input(_));
+            Some(json!({
                 "name": input.name,
                 "description": input.description,
                 "unit": input.unit.map_or_else(String::new, |unit| unit.name.to_string()),
                 "factor": 1.0,
                 "value": load,
                 "largest": largest,
-            })
-        })
-        .collect();
+                "moves": is_input && mechanism.has_followers(place),
+            }))
+        });
+        let loads: Vec<Value> = loads.collect();
         // Prescribed motions have none.
         let range = |range: &Option<DriverRange>| {
             let DriverRange {

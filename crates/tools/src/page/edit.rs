@@ -94,6 +94,18 @@ pub fn change_values<'a>(
     Ok(text.as_str().to_owned())
 }
 
+/// Returns the text with other starts of inputs \[SI\], by their names.
+pub(super) fn set_input_starts<'a>(
+    text: String,
+    starts: impl Iterator<Item = (&'a str, f64)>,
+) -> Result<String, EditError> {
+    let mut text = TomlText::new(&text)?;
+    for (name, start) in starts {
+        set_number(&mut text, &["inputs", name, "start"], start)?;
+    }
+    Ok(text.as_str().to_owned())
+}
+
 /// Sets the value of a parameter, which is a number or a table.
 fn set_parameter(text: &mut TomlText, name: &str, value: f64) -> Result<(), EditError> {
     let own = ["parameters", name, "value"];

@@ -87,8 +87,10 @@ impl Host {
                 json!({})
             }
             Request::Load { input, value } => {
-                session?.set_load(input, value);
-                json!({})
+                let session = session?;
+                let mut answer = moved(session, |session| session.set_load(input, value));
+                answer["value"] = json!(session.load(input));
+                answer
             }
             Request::Time { value } => moved(session?, |session| session.go_to(value)),
             Request::Set {

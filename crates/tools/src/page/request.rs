@@ -33,7 +33,7 @@ pub(super) enum Request {
         velocity: f64,
         acceleration: f64,
     },
-    /// Sets an input of a force.
+    /// Sets an input, or that of a force; answers an outcome, and the `value` reached.
     Load { input: usize, value: f64 },
     /// Goes to a time; answers an outcome.
     Time { value: f64 },

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::edit::{EditError, PosePart, edit};
+use super::edit::{EditError, PosePart, edit, set_input_starts};
 use super::held::assembled;
 use super::outcome::{Obstacle, Outcome};
 use super::ranges::{DriverRange, driver_ranges, start_rates};
@@ -18,8 +18,8 @@ use biela::kinematics::{
     DriverPath, ForceQuantity, Output, OutputSource, Path, Pose, Reason, Solver,
 };
 use biela::mechanism::{
-    BodyId, DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source,
-    Unit,
+    BodyId, DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, PrescribedMotion,
+    Severity, Source, Unit,
 };
 
 /// Reciprocal condition below which a pose counts as a dead point, where rates grow without bound. A
@@ -254,14 +254,84 @@ impl Session {
         }
     }
 
-    /// Sets the size of a force that is an input \[SI\].
-    pub fn set_load(&mut self, input: usize, size: f64) {
-        if let Some(load) = self.motion.solution.loads.get_mut(input)
-            && size.is_finite()
-        {
-            *load = size;
-            self.fly_on();
-            self.refresh();
+    /// Sets the size of a force that is an input \[SI\], or an input: drivers that follow it move there.
+    pub fn set_load(&mut self, input: usize, size: f64) -> Outcome {
+        if !size.is_finite() {
+            return Outcome::Refused(Obstacle::new("the value is no finite number"));
+        }
+        if self.mechanism.has_followers(input) {
+            return self.lead_followers(input, size);
+        }
+        let Some(load) = self.motion.solution.loads.get_mut(input) else {
+            return Outcome::Refused(Obstacle::new("no such input"));
+        };
+        *load = size;
+        self.fly_on();
+        self.refresh();
+        Outcome::Reached
+    }
+
+    /// Returns the value of an input of those that [`set_load`](Self::set_load) sets \[SI\].
+    #[must_use]
+    pub fn load(&self, input: usize) -> Option<f64> {
+        if self.mechanism.has_followers(input) {
+            return Some(self.mechanism.inputs[input].start);
+        }
+        self.motion.solution.loads.get(input).copied()
+    }
+
+    /// Moves the drivers that follow an input to a value of it, as far as they can go: the mechanism becomes
+    /// one whose input starts with the value reached.
+    fn lead_followers(&mut self, input: usize, value: f64) -> Outcome {
+        /// Part of the way by which a second try ends before the place where the first has stopped.
+        const BEFORE: f64 = 1e-6;
+        self.take();
+        let here = self.pose().clone();
+        let from = self.mechanism.inputs[input].start;
+        let mut end = value;
+        let mut stopped = None;
+        for _ in 0..2 {
+            let mut mechanism = Mechanism::clone(&self.mechanism);
+            mechanism.set_input_start(input, end);
+            self.path_to_followers(&mechanism, &here.parameters);
+            let Err(blocked) = self.motion.solver.track(&self.path) else {
+                return self.exchange_followers(mechanism, stopped);
+            };
+            let moves = |id: DriverId| self.mechanism.drivers[id.index()].follows.is_some();
+            let obstacle = Obstacle::of_stop(&blocked, &self.motion.solver, &self.path, moves);
+            stopped = stopped.or(Some(obstacle));
+            self.motion.solver.restore(&here);
+            end = from + (blocked.s - BEFORE).max(0.0) * (end - from);
+        }
+        self.refresh();
+        Outcome::Refused(stopped.unwrap_or_default())
+    }
+
+    /// Goes on with a mechanism whose drivers that follow inputs are where the pose has them.
+    fn exchange_followers(&mut self, mechanism: Mechanism, stopped: Option<Obstacle>) -> Outcome {
+        let mut solver = match Solver::new(Arc::new(mechanism)) {
+            Ok(solver) => solver,
+            Err(error) => return Outcome::Refused(Obstacle::new(error.to_string())),
+        };
+        solver.restore(self.pose());
+        self.exchange(solver);
+        self.release_moved(false);
+        self.tell_overlaps(stopped.map_or(Outcome::Reached, Outcome::Stopped))
+    }
+
+    /// Prepares the path to where the drivers that follow inputs are in a mechanism, at the present time and
+    /// with these parameters.
+    fn path_to_followers(&mut self, mechanism: &Mechanism, parameters: &[f64]) {
+        let (time, now) = (self.pose().time, self.pose().drivers.clone());
+        let path = self.path_here();
+        let drivers = mechanism.drivers.iter().zip(now).enumerate();
+        for (index, (driver, now)) in drivers {
+            if let (Some(_), Some(PrescribedMotion::Expression(motion))) =
+                (&driver.follows, driver.motion())
+            {
+                let value = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
+                path.driver_paths[index] = DriverPath::held(value, now);
+            }
         }
     }
 
@@ -287,6 +357,12 @@ impl Session {
     /// Prepares the path on which nothing moves, at the pose.
     pub(super) fn path_here(&mut self) -> &mut Path {
         self.motion.solver.pose().set_path(&mut self.path);
+        let driver_paths = self.path.driver_paths.iter_mut();
+        for (driver_path, driver) in driver_paths.zip(&self.mechanism.drivers) {
+            if driver.motion().is_some() {
+                *driver_path = DriverPath::Motion;
+            }
+        }
         &mut self.path
     }
 
@@ -313,10 +389,13 @@ impl Session {
         }
         let here = self.pose().clone();
         self.motion.solver.restore(&self.start.pose);
-        let path = self.path_here();
+        let mechanism = Arc::clone(&self.mechanism);
+        self.path_to_followers(&mechanism, &here.parameters);
+        let path = &mut self.path;
         path.to.clone_from(&here.parameters);
-        for (driver_path, value) in path.driver_paths.iter_mut().zip(&here.drivers) {
-            if let DriverPath::Input { position, .. } = *driver_path {
+        let inputs = path.driver_paths.iter_mut().zip(&here.drivers);
+        for ((driver_path, value), driver) in inputs.zip(&mechanism.drivers) {
+            if let (DriverPath::Input { position, .. }, None) = (*driver_path, driver.motion()) {
                 *driver_path = DriverPath::held(*value, position);
             }
         }
@@ -444,7 +523,13 @@ impl Session {
         let names: Vec<String> = changed.map(|(p, _)| p.name.clone()).collect();
         let velocity = |freedom| Some(self.driver(freedom).first());
         let text = self.source.text();
-        edit(text, &self.own, &names, (&pose, velocity), place)
+        let text = edit(text, &self.own, &names, (&pose, velocity), place)?;
+        if place == PosePart::Keep {
+            return Ok(text);
+        }
+        let inputs = self.own.inputs.iter().zip(&self.mechanism.inputs);
+        let moved = inputs.filter(|(own, now)| own.start.to_bits() != now.start.to_bits());
+        set_input_starts(text, moved.map(|(_, input)| (&*input.name, input.start)))
     }
 
     // -- undo --------------------------------------------------------------------------------
@@ -524,6 +609,12 @@ impl Session {
             prepared.is_ok(),
             "those of the mechanism before were prepared"
         );
+        let inputs = self.mechanism.inputs.iter().enumerate();
+        for (index, input) in inputs.filter(|(index, _)| self.mechanism.has_followers(*index)) {
+            if let Some(load) = self.motion.solution.loads.get_mut(index) {
+                *load = input.start;
+            }
+        }
     }
 }
 

@@ -97,19 +97,10 @@ impl Conditions {
         for (freedom, order, value) in self.settings.starts(mechanism)? {
             driven.set_start(freedom, order, value);
         }
-        let signals = match signals {
+        let mut signals = match signals {
             Some(path) => Signals::read(path, &driven, &forces_by_option)?,
             None => Signals::default(),
         };
-        for (place, input) in driven.load_inputs().into_iter().enumerate() {
-            if let (true, Some(driver)) = (signals.has_load(place), driven.follower(input.target)) {
-                return Err(Error::Usage(format!(
-                    "driver `{}` follows the input `{}`, for which --input is not possible: give it \
-                     by --drive",
-                    driver.name, input.name
-                )));
-            }
-        }
         if let Some(driver) = driven_by_option.iter().find(|d| signals.has(**d)) {
             let name = &mechanism.drivers[driver.index()].name;
             return Err(Error::Usage(format!(
@@ -118,8 +109,9 @@ impl Conditions {
             )));
         }
         signals.make_inputs(&mut driven);
+        let mechanism = signals.with_followers(driven, &parameters, start);
         Ok(Scenario {
-            mechanism: Arc::new(driven),
+            mechanism,
             parameters,
             signals,
             start,

@@ -3,9 +3,10 @@
 mod file;
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use biela::dynamics::Given;
-use biela::mechanism::{DriverId, DriverSource, Jet, Mechanism, Order};
+use biela::mechanism::{DriverId, DriverSource, Jet, Mechanism, Order, ParameterId};
 
 /// Values of drivers and of inputs of forces over time: linear between two points, constant before
 /// the first and after the last. At a time that occurs twice the value jumps to that of the later
@@ -15,6 +16,8 @@ pub(in crate::cli) struct Signals {
     times: Vec<f64>,
     /// Values of each column; a driver with a column has one of positions.
     columns: Vec<(ColumnInput, Vec<f64>)>,
+    /// The mechanism, if drivers of it follow inputs that have a column, and the parameters in force.
+    followers: Option<(Arc<Mechanism>, Vec<f64>)>,
 }
 
 /// The input that a column gives.
@@ -52,20 +55,72 @@ impl Signals {
         for (target, values) in &self.columns {
             if let ColumnInput::Driver(id, Order::Position) = *target {
                 let start = values[0];
-                mechanism.drivers[id.index()].source = DriverSource::Input { start };
+                let driver = &mut mechanism.drivers[id.index()];
+                driver.source = DriverSource::Input { start };
+                driver.follows = None;
             }
         }
+    }
+
+    /// Returns the mechanism whose drivers that follow inputs with a column are given, from a time on.
+    pub(super) fn with_followers(
+        &mut self,
+        mut mechanism: Mechanism,
+        parameters: &[f64],
+        time: f64,
+    ) -> Arc<Mechanism> {
+        let inputs = mechanism.inputs.iter().enumerate();
+        let has_column = |index| self.load(mechanism.input_place(index)).is_some();
+        let has_column: Vec<bool> = inputs
+            .map(|(index, input)| input.given.is_none() && has_column(index))
+            .collect();
+        mechanism.give_followers(|input| has_column[input], parameters, time);
+        let mechanism = Arc::new(mechanism);
+        let mut drivers = mechanism.drivers.iter();
+        self.followers = drivers
+            .any(|driver| driver.is_moved_by_inputs())
+            .then(|| (Arc::clone(&mechanism), parameters.to_vec()));
+        mechanism
     }
 
     /// Returns whether some driver follows a signal.
     pub(in crate::cli) fn has_drivers(&self) -> bool {
         let mut targets = self.columns.iter().map(|(target, _)| target);
-        targets.any(|target| target.driver().is_some())
+        targets.any(|target| target.driver().is_some()) || self.followers.is_some()
     }
 
-    /// Returns whether a driver follows a signal.
+    /// Returns whether a driver follows a signal, its own or through inputs of the file.
     pub(in crate::cli) fn has(&self, driver: DriverId) -> bool {
-        self.of(driver, Order::Position).is_some()
+        self.of(driver, Order::Position).is_some() || self.moves_by_inputs(driver)
+    }
+
+    /// Returns whether inputs with a column move a driver that follows them.
+    pub(in crate::cli) fn moves_by_inputs(&self, driver: DriverId) -> bool {
+        let mut mechanisms = self.followers.iter().map(|(mechanism, _)| mechanism);
+        mechanisms.any(|mechanism| mechanism.drivers[driver.index()].is_moved_by_inputs())
+    }
+
+    /// Returns value, velocity and acceleration at a time of a driver that follows inputs, for the
+    /// `signal` of a column.
+    fn followed(&self, driver: DriverId, time: f64, signal: impl Fn(&[f64]) -> Jet) -> Option<Jet> {
+        let (mechanism, parameters) = self.followers.as_ref()?;
+        let driver = &mechanism.drivers[driver.index()];
+        if !driver.is_moved_by_inputs() {
+            return None;
+        }
+        let parameter = |id: ParameterId| Jet::constant(parameters[id.index()]);
+        let input = |index: usize| match self.load(mechanism.input_place(index)) {
+            Some(values) => signal(values),
+            None => Jet::constant(mechanism.inputs[index].start),
+        };
+        driver.followed(&parameter, &input, Jet::variable(time))
+    }
+
+    /// Returns the column of a load, by its place.
+    fn load(&self, place: usize) -> Option<&[f64]> {
+        let mut columns = self.columns.iter();
+        let found = columns.find(|(target, _)| *target == ColumnInput::Force(place));
+        found.map(|(_, values)| &values[..])
     }
 
     fn of(&self, driver: DriverId, order: Order) -> Option<&[f64]> {
@@ -74,10 +129,14 @@ impl Signals {
         found.map(|(_, values)| &values[..])
     }
 
-    /// Returns a driver's value, with the slope from this time on as velocity.
+    /// Returns a driver's value, with the slope from this time on as velocity, or with the rates of what
+    /// follows inputs.
     pub(in crate::cli) fn line(&self, driver: DriverId, time: f64) -> Option<Jet> {
-        let positions = self.of(driver, Order::Position)?;
-        Some(self.interpolate(positions, time))
+        let signal = |values: &[f64]| self.interpolate(values, time);
+        let positions = self.of(driver, Order::Position);
+        positions
+            .map(signal)
+            .or_else(|| self.followed(driver, time, signal))
     }
 
     /// Returns a driver's value, velocity and acceleration. Without a column of velocities the
@@ -159,7 +218,9 @@ impl Part<'_> {
 impl Given for Part<'_> {
     fn driver(&self, driver: DriverId, time: f64) -> Jet {
         let Some(positions) = self.signals.of(driver, Order::Position) else {
-            return Jet::constant(self.held[driver.index()]);
+            let signal = |values: &[f64]| self.line(values, time);
+            let followed = self.signals.followed(driver, time, signal);
+            return followed.unwrap_or(Jet::constant(self.held[driver.index()]));
         };
         let mut jet = self.line(positions, time);
         let orders = [Order::Velocity, Order::Acceleration];
@@ -177,14 +238,6 @@ impl Given for Part<'_> {
                 loads[input] = self.line(values, time).value;
             }
         }
-    }
-}
-
-impl Signals {
-    /// Returns whether there is a column of a load, by its place.
-    pub(super) fn has_load(&self, place: usize) -> bool {
-        let mut targets = self.columns.iter();
-        targets.any(|(target, _)| *target == ColumnInput::Force(place))
     }
 }
 

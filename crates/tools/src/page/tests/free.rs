@@ -470,3 +470,48 @@ fn friction_still_holds_after_a_refused_parameter() {
     play(&mut session, 0.5);
     assert!(variable(&session, "slip.position").abs() < 1e-12);
 }
+
+// A slider that follows an input carries a pendulum: it moves as one that the hand moves.
+#[test]
+fn what_follows_an_input_carries_what_is_free() {
+    let text = |driver: &str| {
+        format!(
+            r#"
+            format = 1
+            name = "carrier"
+            [inputs]
+            level = {{ start = 0.1 }}
+            [ground.markers]
+            O = [0, 0]
+            [bodies.block]
+            markers = {{ B = [0, 0] }}
+            [bodies.rod]
+            markers = {{ B = [0, 0] }}
+            mass = 1
+            inertia = 0.1
+            center = [0, -0.5]
+            [joints]
+            guide = {{ type = "translational", markers = ["ground.O", "block.B"] }}
+            hinge = {{ type = "revolute", markers = ["block.B", "rod.B"] }}
+            [drivers]
+            x = {{ coordinate = "x", markers = ["ground.O", "block.B"], {driver} }}
+            [freedoms]
+            swing = {{ coordinate = "angle", markers = ["block.B", "rod.B"], start = 0.3 }}
+            "#
+        )
+    };
+    let mut follower = open(&text("motion = \"2*level\""));
+    let mut driven = open(&text("start = 0.2"));
+    for (step, level) in [0.1, 0.4, 0.4, -0.2].into_iter().enumerate() {
+        assert_eq!(follower.set_load(0, level), Outcome::Reached);
+        assert_eq!(driven.drive(DriverId(0), 2.0 * level), Outcome::Reached);
+        let time = 0.2 * (step + 1) as f64;
+        assert_eq!(follower.go_to(time), Outcome::Reached);
+        assert_eq!(driven.go_to(time), Outcome::Reached);
+        let pairs = follower.pose().q.iter().zip(&driven.pose().q);
+        for (found, truth) in pairs {
+            assert!((found - truth).abs() < 1e-12, "{step}: {found} {truth}");
+        }
+    }
+    assert!((follower.pose().q[0] + 0.4).abs() < 1e-15);
+}

@@ -7,6 +7,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
 use serde_json::{Value, json};
 
+use super::outcome::Obstacle;
 use super::{Host, Outcome, Session};
 use biela::mechanism::{BodyId, DriverId, ParameterId, Source};
 
@@ -469,4 +470,78 @@ fn a_load_is_felt_by_the_driver() {
     assert_eq!(session.description()["loads"][1]["value"], loads[1]);
     session.reset();
     assert!(effort(&session).abs() <= 0.0);
+}
+
+/// An arm on a rod whose length follows an input, and time.
+const REACH: &str = r#"
+format = 1
+name = "reach"
+[parameters]
+gain = 2
+[inputs]
+level = { start = 0.4, max = 1.5 }
+[ground.markers]
+O = [0, 0]
+D = [1, 0]
+[bodies.arm]
+markers = { O = [0, 0], P = [1, 0] }
+estimate = [0, 0, 0.8]
+[joints]
+O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+[drivers]
+rod = { coordinate = "distance", markers = ["ground.D", "arm.P"], motion = "gain*level + 0.1*t" }
+"#;
+
+/// Returns the angle at which the arm is for a length of the rod: a chord of the circle of radius 1.
+fn arm_at(length: f64) -> f64 {
+    2.0 * (0.5 * length).asin()
+}
+
+// The slider of an input moves what follows it, up to the dead point; time, parameters, undo and the
+// file go from there.
+#[test]
+fn a_slider_of_an_input_moves_what_follows_it() {
+    let mut session = open(REACH);
+    let off = |session: &Session, length: f64| (session.pose().q[2] - arm_at(length)).abs();
+    assert!(off(&session, 0.8) < 1e-12);
+    assert_eq!(session.description()["loads"][0]["moves"], true);
+    assert_eq!(session.description()["drivers"][0]["is_input"], false);
+    session.keep();
+    assert_eq!(session.set_load(0, 0.6), Outcome::Reached);
+    assert!(off(&session, 1.2) < 1e-12);
+    assert_eq!(session.go_to(0.5), Outcome::Reached);
+    assert!(off(&session, 1.25) < 1e-12);
+    assert_eq!(session.set_load(0, 0.5), Outcome::Reached);
+    assert!(off(&session, 1.05) < 1e-12);
+    assert!((session.motion.solution.driver_rates[0].first() - 0.1).abs() < 1e-15);
+    let gain = parameter(&session, "gain");
+    assert_eq!(session.set(gain, 3.0, false), Outcome::Reached);
+    assert!(off(&session, 1.55) < 1e-12);
+    assert_eq!(session.go_to(0.0), Outcome::Reached);
+    assert!(off(&session, 1.5) < 1e-12);
+    let text = session.text().expect("it was read");
+    assert!(
+        text.contains("level = { start = 0.5, max = 1.5 }"),
+        "{text}"
+    );
+    assert!(off(&open(&text), 1.5) < 1e-12);
+    // A length of 2 is the dead point, near which the length changes with the square of the angle.
+    let Outcome::Stopped(obstacle) = session.set_load(0, 1.0) else {
+        panic!("the arm does not reach as far");
+    };
+    assert!(obstacle.message.contains("`rod`"), "{}", obstacle.message);
+    let level = session.load(0).expect("it is there");
+    assert!((3.0 * level - 2.0).abs() < 1e-5, "{level}");
+    assert!(off(&session, 3.0 * level) < 1e-7);
+    assert!(session.undo());
+    assert!(off(&session, 0.8) < 1e-12);
+    assert_eq!(session.load(0), Some(0.4));
+    assert_eq!(session.go_to(0.5), Outcome::Reached);
+    assert!(off(&session, 0.85) < 1e-12);
+    assert_eq!(
+        session.set_load(0, f64::NAN),
+        Outcome::Refused(Obstacle::new("the value is no finite number"))
+    );
+    session.reset();
+    assert!(off(&session, 0.8) < 1e-12);
 }

@@ -474,3 +474,115 @@ fn a_value_of_a_wrapped_angle_means_the_turn_nearest_the_last_one() {
     let [position, _] = run("", &format!("time,crank_angle\n0,0.7\n{rows}"));
     assert!(near(&position, &[0.7, 3.7, 6.2, 0.1, 1.0]), "{position:?}");
 }
+
+/// A slider that carries a pendulum, or a plain bob where nothing is free.
+fn carrier(driver: &str, is_free: bool) -> String {
+    let (section, swing) = if is_free {
+        ("freedoms", "start = 0.3")
+    } else {
+        ("drivers", "motion = \"0.3 + t\"")
+    };
+    format!(
+        r#"
+format = 1
+name = "carrier"
+[parameters]
+gain = 2
+[inputs]
+setpoint = {{ start = 0.1 }}
+[ground.markers]
+O = [0, 0]
+[bodies.block]
+markers = {{ B = [0, 0] }}
+mass = 2
+[bodies.rod]
+markers = {{ B = [0, 0] }}
+mass = 1
+inertia = 0.1
+center = [0, -0.5]
+[joints]
+guide = {{ type = "translational", markers = ["ground.O", "block.B"] }}
+hinge = {{ type = "revolute", markers = ["block.B", "rod.B"] }}
+[drivers]
+x = {{ coordinate = "x", markers = ["ground.O", "block.B"], {driver} }}
+[{section}.swing]
+coordinate = "angle"
+markers = ["block.B", "rod.B"]
+{swing}
+"#
+    )
+}
+
+/// A driver that follows an input with a column moves as one whose own column has what it follows: with a
+/// pendulum on it that is driven and one that is free, with a jump of the column.
+#[test]
+fn a_driver_that_follows_an_input_is_moved_by_its_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, table] = ["carrier.toml", "table.csv"].map(|name| folder.path().join(name));
+    let run = |text: &str, content: &str, more: &[&str]| {
+        std::fs::write(&file, text).unwrap();
+        std::fs::write(&table, content).unwrap();
+        let arguments = ["run", file.to_str().unwrap()];
+        let more = [&["--stop", "2", "--step", "0.125"][..], more].concat();
+        biela(&[&arguments[..], &more].concat())
+    };
+    let by_table = ["--input", table.to_str().unwrap()];
+    let rows = [
+        [0.0, 0.1],
+        [0.5, 0.25],
+        [0.8, -0.05],
+        [1.3, -0.05],
+        [1.3, 0.1],
+    ];
+    let rows = [&rows[..], &[[1.75, 0.4]]].concat();
+    let content = |name: &str, factor: f64| {
+        let lines = rows.iter().map(|[t, s]| format!("{t},{}\n", factor * s));
+        format!("time,{name}\n{}", lines.collect::<String>())
+    };
+    let names = [
+        "x.position",
+        "x.velocity",
+        "x.acceleration",
+        "x.effort",
+        "rod.phi",
+        "rod.alpha",
+    ];
+    for is_free in [false, true] {
+        // A column that jumps moves a freedom by an impact.
+        let follower = carrier("motion = \"gain*setpoint\"", is_free);
+        let found = stdout(&run(&follower, &content("setpoint", 1.0), &by_table).success());
+        let driven = carrier("start = 0.2", is_free);
+        let truth = stdout(&run(&driven, &content("x", 2.0), &by_table).success());
+        for name in names {
+            let pairs = column(&found, name).into_iter().zip(column(&truth, name));
+            for (row, (found, truth)) in pairs.enumerate() {
+                // Roundings; of a free motion, whose steps are the same, with growth.
+                let tolerance = if is_free { 1e-10 } else { 1e-13 };
+                let off = (found - truth).abs() / (1.0 + truth.abs());
+                assert!(off < tolerance, "{is_free} {name} {row}: {found} {truth}");
+            }
+        }
+        let moved = column(&found, "x.velocity");
+        assert!((moved[1] - 0.6).abs() < 1e-13, "{moved:?}");
+    }
+    // The square of an input beside time: by the chain rule, as the same motion in t alone has it.
+    let follower = carrier("motion = \"gain*setpoint^2 + 0.1*t^2\"", false);
+    let found = run(&follower, "time,setpoint\n0,0.1\n3,0.7\n", &by_table);
+    let found = stdout(&found.success());
+    let motion = ["--drive", "setpoint = 0.1 + 0.2*t"];
+    let truth = stdout(&run(&follower, "", &motion).success());
+    for name in names {
+        let pairs = column(&found, name).into_iter().zip(column(&truth, name));
+        for (found, truth) in pairs {
+            assert!(
+                (found - truth).abs() < 1e-12 * (1.0 + truth.abs()),
+                "{name}: {found} {truth}"
+            );
+        }
+    }
+    let accelerations = column(&found, "x.acceleration");
+    assert!(
+        accelerations.iter().all(|a| (a - 0.36).abs() < 1e-13),
+        "{accelerations:?}"
+    );
+}

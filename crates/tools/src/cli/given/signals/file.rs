@@ -104,6 +104,7 @@ impl Signals {
         let mut signals = Self {
             times,
             columns: targets.zip(values).collect(),
+            followers: None,
         };
         let mut drivers = signals
             .columns
