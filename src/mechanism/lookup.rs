@@ -46,7 +46,6 @@ impl Mechanism {
         let functions = FunctionNames {
             known: known.collect(),
             list: self.functions.clone(),
-            are_callable: true,
         };
         let scope = Scope {
             functions: Some(&functions),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 
 import biela
@@ -131,3 +132,37 @@ def test_all_parameters_are_those_that_can_be_set(any_mechanism):
         gradient = any_mechanism.run(t=t, drive=drive, gradient="all").gradient
     free = [p.name for p in any_mechanism.parameters.values() if not p.derived]
     assert gradient.parameters == free and np.isfinite(gradient.to_numpy()).all()
+
+
+def test_a_parameter_that_calls_a_function_is_derived():
+    """The length follows from the load by a curve, whose slope the gradient has."""
+    text = """
+format = 1
+name = "arm"
+[parameters]
+load = { value = 3, unit = "N", tunable = true }
+length = { value = "stretched(load)", unit = "m" }
+[functions]
+stretched = { of = ["force"], value = "curve(force) + 0.01*load^2" }
+curve = { table = [[0, 1], [2, 1.5], [6, 1.7]], law = "linear" }
+[ground.markers]
+O = [0, 0]
+[bodies.arm]
+markers = { O = [0, 0], P = ["length", 0] }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+[drivers]
+turn = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0 }
+[outputs]
+markers = ["arm.P"]
+"""
+    arm = biela.loads(text)
+    found = arm.run(drive={"turn": [0.0]}, gradient=["load"])
+    assert_allclose(found["arm.P.x"], 1.5 + 0.05 + 0.09, rtol=1e-15)
+    assert_allclose(found.gradient["arm.P.x", "load"], 0.05 + 0.06, rtol=1e-14)
+    moved = arm.run(drive={"turn": [0.0]}, parameters={"load": 1.0})
+    assert_allclose(moved["arm.P.x"], 1.25 + 0.01, rtol=1e-15)
+    with pytest.raises(biela.UsageError, match="`length` is derived from other parameters"):
+        arm.run(drive={"turn": [0.0]}, parameters={"length": 1.0})
+    line = re.search(r'<ScalarVariable name="length"[^>]*>', arm.model_description())[0]
+    assert 'causality="calculatedParameter"' in line and 'variability="tunable"' in line

@@ -7,9 +7,14 @@ use proptest::prelude::*;
 
 /// A mechanism with functions, and expressions that call them over time.
 fn with_functions(functions: &str) -> Mechanism {
+    with_parameters(functions, "")
+}
+
+/// As [`with_functions`], with further parameters.
+fn with_parameters(functions: &str, parameters: &str) -> Mechanism {
     let text = format!(
         "format = 1\nname = \"functions\"\n{functions}\n\
-         [parameters]\nk = {{ value = 1.5, tunable = true }}\n\
+         [parameters]\n{parameters}k = {{ value = 1.5, tunable = true }}\n\
          [ground.markers]\nO = [0, 0]\n[bodies.a.markers]\nO = [0, 0]\n\
          [joints.O]\ntype = \"revolute\"\nmarkers = [\"ground.O\", \"a.O\"]\n\
          [drivers.a_turn]\ncoordinate = \"angle\"\nmarkers = [\"ground.O\", \"a.O\"]\nstart = 0\n"
@@ -148,6 +153,30 @@ fn functions_call_functions() {
     for x in [-0.4, 0.2, 1.1] {
         assert!((at(&nested, x) - (at(&inner, x) + 2.0 * x * x + 1.5)).abs() < 1e-14);
     }
+}
+
+/// A parameter that calls a function follows from what that uses, by its value and its derivative: here by
+/// way of a function whose points use a parameter, which calls one itself.
+#[test]
+fn parameters_call_functions() {
+    let mechanism = with_parameters(
+        "[functions]\n\
+         square = { value = \"k*x^2\" }\n\
+         line = { table = [[0, 0], [2, \"top\"]], law = \"linear\" }\n\
+         plain = { table = [[0, 3], [1, 5]], law = \"linear\" }\n",
+        "lift = \"line(0.5) + top\"\ntop = { value = \"square(2)\", max = \"plain(1) + 2\" }\n\
+         start = { value = \"plain(0.5)\", tunable = true }\n",
+    );
+    // lift = top/4 + top, top = 4 k, and the last one is a number.
+    assert_eq!(mechanism.default_parameters(), [7.5, 6.0, 4.0, 1.5]);
+    let derived: Vec<bool> = mechanism.parameters.iter().map(|p| p.derived).collect();
+    assert_eq!(derived, [true, true, false, false]);
+    assert_eq!(mechanism.parameters[1].max, Some(7.0));
+    let mut values = [0.0, 0.0, 4.0, 3.0].map(Dual::constant);
+    values[3] = Dual::new(3.0, [1.0]);
+    mechanism.derive_parameters(&mut values);
+    let found = values.map(|value| [value.value, value.first()]);
+    assert_eq!(found, [[15.0, 5.0], [12.0, 4.0], [4.0, 0.0], [3.0, 1.0]]);
 }
 
 /// Value and derivatives on some type of numbers with derivatives lie in their bounds over a range.

@@ -379,6 +379,16 @@ impl Expression {
         })
     }
 
+    /// Returns the expression with the functions that it calls, which could not be read before it.
+    pub(in crate::mechanism) fn with_functions(&self, functions: &Functions) -> Self {
+        Self::new(self.program.to_vec(), functions)
+    }
+
+    /// Returns whether a parameter stands in it, not only in functions that it calls.
+    pub(in crate::mechanism) fn names(&self, parameter: ParameterId) -> bool {
+        self.program.contains(&Operation::Parameter(parameter))
+    }
+
     /// Returns the places of the functions that it calls, each as often as it does.
     pub(in crate::mechanism) fn calls(&self) -> impl Iterator<Item = usize> {
         let operations = self.program.iter();

@@ -59,8 +59,6 @@ pub(in crate::mechanism) struct FunctionNames<'a> {
     pub(in crate::mechanism) known: NameTable<'a, Signature>,
     /// The functions, none while they are read.
     pub(in crate::mechanism) list: Functions,
-    /// Whether they may be called, which parameters may not, as functions use these.
-    pub(in crate::mechanism) are_callable: bool,
 }
 
 /// The shape of a call of a function.
@@ -426,15 +424,6 @@ impl<'a> Parser<'a> {
         place: Span,
         called: bool,
     ) -> Result<Span, ExpressionError> {
-        if self
-            .scope
-            .functions
-            .is_some_and(|names| !names.are_callable)
-        {
-            let message = format!("a parameter cannot call the function {}", quoted(name));
-            return Err(ExpressionError::new(place, message)
-                .help("functions use parameters: call it where the parameter is used"));
-        }
         if !called {
             let error = ExpressionError::new(place, format!("{} is a function", quoted(name)));
             return Err(error.help(format!("write `{name}(…)`")));

@@ -29,7 +29,7 @@ impl<'a> Context<'a> {
         let bodies = self.body_names.iter().copied();
         self.bodies = bodies.zip((0..).map(BodyId)).collect();
         if !root.functions.items().is_empty() {
-            self.declare_functions(root.functions.items(), false);
+            self.declare_functions(root.functions.items());
         }
         let inputs = root.inputs.items().iter().map(Entry::name);
         self.inputs = inputs.zip(0..).collect();

@@ -9,7 +9,7 @@ use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{
     CalledPoints, Diagnostic, Ends, Expression, Function, FunctionBody, Functions, Grid,
-    Interpolation, MOST_ARGUMENTS, MOST_MOVING_POINTS, PointFunction, Span,
+    Interpolation, MOST_ARGUMENTS, MOST_MOVING_POINTS, ParameterId, PointFunction, Span,
 };
 
 use super::context::Context;
@@ -168,12 +168,11 @@ impl Draft<'_> {
 }
 
 impl<'a> Context<'a> {
-    /// Reads the functions, for which all parameters must have their values.
+    /// Reads the functions. Parameters that call none have their values.
     pub(super) fn functions(&mut self, entries: &[Entry<'a>]) -> Functions {
         if entries.is_empty() {
             return Functions::default();
         }
-        self.declare_functions(entries, true);
         let drafts = entries.iter().map(|entry| self.function_draft(*entry));
         let mut drafts: Vec<Draft<'a>> = drafts.collect();
         let Some(order) = self.order_of_functions(&drafts) else {
@@ -193,14 +192,13 @@ impl<'a> Context<'a> {
         let names = FunctionNames {
             known: known.collect(),
             list: functions.clone(),
-            are_callable: true,
         };
         self.functions = Some(names.into());
         functions
     }
 
     /// Declares the names of the functions, which are read later.
-    pub(super) fn declare_functions(&mut self, entries: &[Entry<'a>], are_callable: bool) {
+    pub(super) fn declare_functions(&mut self, entries: &[Entry<'a>]) {
         let places = entries.iter().enumerate();
         let known = places.map(|(place, entry)| {
             let arguments = number_of_arguments(entry);
@@ -209,7 +207,6 @@ impl<'a> Context<'a> {
         let names = FunctionNames {
             known: known.collect(),
             list: Functions::default(),
-            are_callable,
         };
         self.functions = Some(names.into());
         self.functions_used = vec![false; entries.len()];
@@ -472,6 +469,38 @@ impl<'a> Context<'a> {
                     .suggest("write a table of its values: `table = [[0, 0], [1, 2]]`");
                 // Those that call it would tell the same.
                 costs[place] = (0, 0);
+            }
+        }
+    }
+
+    /// Checks the functions whose points use parameters that call functions, which had no values when they
+    /// were read: their arguments rise.
+    pub(super) fn check_functions(&mut self, entries: &[Entry<'a>], functions: &Functions) {
+        for (entry, function) in entries.iter().zip(functions.list()) {
+            if !self.knows(function.parameters.iter().copied()) {
+                continue;
+            }
+            let parameter = |id: ParameterId| self.known_value(id);
+            let rises = match &function.body {
+                FunctionBody::Formula(_) => true,
+                FunctionBody::Points(points) => {
+                    let table = &points.function().table;
+                    let [mut x, mut y] = [(); 2].map(|()| vec![0.0; table.points.len()]);
+                    table.write(&parameter, &mut x, &mut y);
+                    x.windows(2).all(|pair| pair[0] < pair[1])
+                }
+                FunctionBody::Grid(grid) => {
+                    let mut factors = grid.scale[..2].iter();
+                    factors.all(|factor| factor.evaluate(&parameter, 0.0) > 0.0)
+                }
+            };
+            if !rises {
+                let name = quoted(&function.name);
+                let message = format!(
+                    "the arguments of the points of the function {name} do not rise with the file's \
+                     parameters"
+                );
+                self.error(code::BAD_TABLE, entry.value.span(), message);
             }
         }
     }

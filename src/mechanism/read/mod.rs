@@ -127,8 +127,10 @@ impl<'a> Context<'a> {
             root.format.value?;
         }
         self.declare(&root);
-        let (parameters, derivation_order) = self.parameters(root.parameters.items());
+        let parameters = self.parameter_drafts(root.parameters.items());
         let functions = self.functions(root.functions.items());
+        let (parameters, derivation_order) = self.parameters(parameters, &functions);
+        self.check_functions(root.functions.items(), &functions);
         let has_freedoms = !root.freedoms.items().is_empty();
         let simulation = self.simulation(&root.simulation.or_empty(), has_freedoms);
         let inputs = self.each(&root.inputs, Self::input);

@@ -7,7 +7,10 @@ use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::wording::{either, quoted};
-use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, ParameterId, Unit};
+use crate::mechanism::{
+    Diagnostic, DisplayUnit, Expression, Function, FunctionBody, Functions, Parameter, ParameterId,
+    Unit,
+};
 
 use super::context::Context;
 use super::kind::{Described, Entry, Flag, Kind, Text};
@@ -52,15 +55,25 @@ impl Described for AnyParameter {
 const MAX_SHOWN_IN_CYCLE: usize = 8;
 
 /// Parameter before all parameters have their values.
-struct Draft<'a> {
+pub(super) struct Draft<'a> {
     entry: Entry<'a>,
     value: Option<Quantity>,
+    /// Whether the value was computed, which may have failed.
+    is_computed: bool,
     /// Attributes, if the parameter is a table.
     keys: Option<ParameterKeys<'a>>,
 }
 
 impl Draft<'_> {
-    /// Returns the indices of the parameters that the value uses.
+    /// Returns the value and the attributes that are numbers.
+    fn quantities(&mut self) -> impl Iterator<Item = &mut Quantity> {
+        let keys = self.keys.iter_mut();
+        let attributes = keys.flat_map(|keys| [&mut keys.min, &mut keys.max, &mut keys.tolerance]);
+        let attributes = attributes.filter_map(|field| field.value.as_mut());
+        self.value.iter_mut().chain(attributes)
+    }
+
+    /// Returns the indices of the parameters that the value uses, also through functions.
     fn uses(&self) -> impl Iterator<Item = usize> {
         let expressions = self.value.iter().map(|value| &value.expression);
         expressions
@@ -69,32 +82,82 @@ impl Draft<'_> {
     }
 }
 
+/// Returns the parameters that use one another, each such group after those that it uses.
+fn components(drafts: &[Draft<'_>]) -> Vec<Vec<usize>> {
+    let mut graph: DiGraph<(), (), usize> = DiGraph::default();
+    for _ in drafts {
+        graph.add_node(());
+    }
+    for (user, draft) in drafts.iter().enumerate() {
+        for used in draft.uses() {
+            graph.add_edge(NodeIndex::new(user), NodeIndex::new(used), ());
+        }
+    }
+    // Strongly connected components come after those that they use.
+    let components = kosaraju_scc(&graph).into_iter();
+    let places =
+        |component: Vec<NodeIndex<usize>>| component.into_iter().map(NodeIndex::index).collect();
+    components.map(places).collect()
+}
+
 impl<'a> Context<'a> {
-    /// Reads the parameters and computes their values. Returns with them the derived ones, each
-    /// after those it uses.
-    pub(super) fn parameters(
-        &mut self,
-        entries: &[Entry<'a>],
-    ) -> (Vec<Parameter>, Vec<ParameterId>) {
+    /// Reads the values of the parameters, and computes those that call no functions, which are still to be
+    /// read.
+    pub(super) fn parameter_drafts(&mut self, entries: &[Entry<'a>]) -> Vec<Draft<'a>> {
         let mut drafts: Vec<Draft<'a>> = entries.iter().map(|entry| self.draft(*entry)).collect();
-        let order = self.derivation_order(&drafts);
-        for index in &order {
-            if let Some(value) = &mut drafts[*index].value {
-                self.evaluate(value);
-                self.parameter_values[*index] = value.value;
+        for component in components(&drafts) {
+            if let [only] = *component
+                && let Some(value) = &drafts[only].value
+                && value.expression.calls().next().is_none()
+            {
+                self.compute(&mut drafts, only);
             }
         }
-        let is_derived = |index: &usize| drafts[*index].uses().next().is_some();
-        let derived = order
-            .into_iter()
-            .filter(is_derived)
-            .map(ParameterId)
-            .collect();
+        drafts
+    }
+
+    /// Computes the values that call functions, and reads the attributes. Returns with the parameters the
+    /// derived ones, each after those it uses.
+    pub(super) fn parameters(
+        &mut self,
+        mut drafts: Vec<Draft<'a>>,
+        functions: &Functions,
+    ) -> (Vec<Parameter>, Vec<ParameterId>) {
+        for draft in &mut drafts {
+            for quantity in draft.quantities() {
+                quantity.expression = quantity.expression.with_functions(functions);
+                self.refuse_jumps(&quantity.expression, &quantity.span);
+            }
+        }
+        let mut derived = Vec::new();
+        for component in components(&drafts) {
+            match *component {
+                [only] if drafts[only].uses().all(|used| used != only) => {
+                    self.compute(&mut drafts, only);
+                    let is_derived = drafts[only].uses().next().is_some();
+                    derived.extend(is_derived.then_some(ParameterId(only)));
+                }
+                _ => self.report_cycle(&drafts, functions.list(), &component),
+            }
+        }
         let drafts = drafts.into_iter();
         (
             drafts.filter_map(|draft| self.parameter(draft)).collect(),
             derived,
         )
+    }
+
+    /// Computes the value of a parameter, once those that it uses have theirs.
+    fn compute(&mut self, drafts: &mut [Draft<'a>], index: usize) {
+        let draft = &mut drafts[index];
+        if let Some(value) = &mut draft.value
+            && !draft.is_computed
+            && self.knows(value.expression.parameters())
+        {
+            draft.is_computed = true;
+            self.evaluate(value);
+            self.parameter_values[index] = value.value;
+        }
     }
 
     fn draft(&mut self, entry: Entry<'a>) -> Draft<'a> {
@@ -105,35 +168,16 @@ impl<'a> Context<'a> {
         } else {
             self.formula(entry.value, &[], None)
         };
-        Draft { entry, value, keys }
-    }
-
-    /// Returns the parameters in an order in which each comes after those it uses, without those
-    /// of cycles, which are reported.
-    fn derivation_order(&mut self, drafts: &[Draft<'a>]) -> Vec<usize> {
-        let mut graph: DiGraph<(), (), usize> = DiGraph::default();
-        for _ in drafts {
-            graph.add_node(());
+        Draft {
+            entry,
+            value,
+            is_computed: false,
+            keys,
         }
-        for (user, draft) in drafts.iter().enumerate() {
-            for used in draft.uses() {
-                graph.add_edge(NodeIndex::new(user), NodeIndex::new(used), ());
-            }
-        }
-        let mut order = Vec::with_capacity(drafts.len());
-        // Strongly connected components come after those that they use.
-        for component in kosaraju_scc(&graph) {
-            let members: Vec<usize> = component.iter().map(|node| node.index()).collect();
-            match *members {
-                [only] if drafts[only].uses().all(|used| used != only) => order.push(only),
-                _ => self.report_cycle(drafts, &members),
-            }
-        }
-        order
     }
 
     /// Reports one cycle among parameters of which each depends on each other one.
-    fn report_cycle(&mut self, drafts: &[Draft<'a>], members: &[usize]) {
+    fn report_cycle(&mut self, drafts: &[Draft<'a>], functions: &[Function], members: &[usize]) {
         let members: HashSet<usize> = members.iter().copied().collect();
         let next = |index: usize| drafts[index].uses().find(|used| members.contains(used));
         let mut seen = HashSet::new();
@@ -149,22 +193,36 @@ impl<'a> Context<'a> {
         cycle.rotate_left(first);
         let name = |index: usize| quoted(drafts[index].entry.name());
         let shown = &cycle[..cycle.len().min(MAX_SHOWN_IN_CYCLE)];
-        let mut names: Vec<String> = shown.iter().map(|index| name(*index)).collect();
+        let called = |place: usize| {
+            let used = ParameterId(cycle[(place + 1) % cycle.len()]);
+            let value = drafts[cycle[place]].value.as_ref();
+            value.map_or_else(Vec::new, |value| way(&value.expression, functions, used))
+        };
+        let called: Vec<Vec<String>> = (0..shown.len()).map(called).collect();
+        let named = shown.iter().zip(&called).flat_map(|(index, called)| {
+            let called = called.iter().cloned();
+            std::iter::once(name(*index)).chain(called)
+        });
+        let mut names: Vec<String> = named.collect();
         if shown.len() < cycle.len() {
             names.push(format!("… ({} more)", cycle.len() - shown.len()));
         }
         names.push(name(cycle[0]));
-        let message = if cycle.len() == 1 {
-            format!("the parameter {} uses itself", names[0])
-        } else {
-            format!("the parameters use one another: {}", names.join(" → "))
+        let message = match (cycle.len(), names.len()) {
+            (1, 2) => format!("the parameter {} uses itself", names[0]),
+            (1, _) => format!("the parameter uses itself: {}", names.join(" → ")),
+            _ => format!("the parameters use one another: {}", names.join(" → ")),
         };
         let mut problem = Diagnostic::error(code::PARAMETER_CYCLE, message);
         for (place, index) in shown.iter().enumerate() {
             let used = cycle[(place + 1) % cycle.len()];
             let value = drafts[*index].value.as_ref();
             let span = value.map_or(0..0, |value| value.span.clone());
-            problem = problem.label(span, format!("uses {}", name(used)));
+            let label = match called[place].first() {
+                Some(function) => format!("calls {function}"),
+                None => format!("uses {}", name(used)),
+            };
+            problem = problem.label(span, label);
         }
         self.report(problem);
     }
@@ -257,4 +315,23 @@ impl<'a> Context<'a> {
         }
         Some(unit.shown_in(display))
     }
+}
+
+/// Returns the names of the functions by way of which an expression uses a parameter; none if it stands in
+/// the expression itself.
+fn way(expression: &Expression, functions: &[Function], used: ParameterId) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut formula = Some(expression);
+    while let Some(expression) = formula.filter(|formula| !formula.names(used)) {
+        let mut called = expression.calls().filter_map(|place| functions.get(place));
+        let Some(function) = called.find(|function| function.parameters.contains(&used)) else {
+            break;
+        };
+        names.push(quoted(&function.name));
+        formula = match &function.body {
+            FunctionBody::Formula(formula) => Some(formula),
+            FunctionBody::Points(_) | FunctionBody::Grid(_) => None,
+        };
+    }
+    names
 }
