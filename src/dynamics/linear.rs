@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::error::Error;
 use super::held::Held;
 use super::motion::FreeMotion;
-use crate::kinematics::{Direction, Output, Rates, Solution, Solver};
+use crate::kinematics::{Direction, Output, OutputSource, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, Mechanism, Order};
 
 /// The linear equations of small motions about a pose: δẋ = A δx + B δu, δy = C δx + D δu.
@@ -136,7 +136,12 @@ impl FreeMotion {
             solver.sensitivity(&solution.rates, &solution.driver_rates, &direction)?;
         let forces = solution.forces().zip(of_forces.as_ref());
         let outputs = outputs.iter();
-        let seen = outputs.map(|output| output.source.change(&mechanism, &sensitivity, forces));
+        let seen = outputs.map(|output| match output.source {
+            OutputSource::Input(index) if mechanism.inputs[index].given.is_none() => {
+                Ok(loads[mechanism.input_place(index)])
+            }
+            source => source.change(&mechanism, &sensitivity, forces),
+        });
         let seen: Result<Vec<f64>, _> = seen.collect();
         Ok((rates, DVector::from_vec(seen?)))
     }

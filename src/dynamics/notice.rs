@@ -93,10 +93,11 @@ impl Motion {
                 let excursion = driver.excursion(*value, pose.time, beyond);
                 excursion.map(Notice::Excursion).map(&mut tell);
             }
-            let inputs = mechanism.inputs.iter().zip(&solution.loads);
-            let inputs = inputs.zip(&mut told.inputs_beyond);
-            for ((input, value), beyond) in inputs.filter(|((input, _), _)| input.given.is_none()) {
-                let excursion = input.excursion(*value, pose.time, beyond);
+            let (parameters, loads) = (&pose.parameters, &solution.loads);
+            let inputs = mechanism.inputs.iter().zip(&mut told.inputs_beyond);
+            for (index, (input, beyond)) in inputs.enumerate() {
+                let value = mechanism.input_value(index, parameters, loads, pose.time);
+                let excursion = input.excursion(value, pose.time, beyond);
                 excursion.map(Notice::Excursion).map(&mut tell);
             }
             let left = solver.off_pulleys(&mut told.off_pulleys);

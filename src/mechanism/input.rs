@@ -159,6 +159,16 @@ impl Mechanism {
         }
     }
 
+    /// Returns the value of an input at a time \[s\], for these parameters and loads \[SI\]. Allocates
+    /// nothing.
+    #[must_use]
+    pub fn input_value(&self, input: usize, parameters: &[f64], loads: &[f64], time: f64) -> f64 {
+        match &self.inputs[input].given {
+            Some(size) => size.evaluate(&|p: ParameterId| parameters[p.index()], time),
+            None => loads[self.input_place(input)],
+        }
+    }
+
     /// Returns the place of an input among the loads, if nothing else gives it.
     #[must_use]
     pub fn input_place(&self, input: usize) -> usize {

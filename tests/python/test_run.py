@@ -262,6 +262,12 @@ def test_a_driver_that_follows_an_input_takes_its_array():
         assert_allclose(found[name], truth[name], rtol=1e-13, atol=1e-13)
         # The motion is in proportion to the gain.
         assert_allclose(found.gradient[name, "gain"], found[name] / 2, rtol=1e-13, atol=1e-13)
+    # The input has a column behind all others, and a gradient where an expression gives it.
+    assert list(follower.run(t=t, drive={"setpoint": setpoint}))[-1] == "setpoint"
+    assert_array_equal(follower.run(t=t, drive={"setpoint": setpoint})["setpoint"], setpoint)
+    given = follower.run(t=t, drive={"setpoint": "gain*t"}, variables=["setpoint"], gradient=["gain"])
+    assert_allclose(given["setpoint"], 2 * t, rtol=1e-15)
+    assert_allclose(given.gradient["setpoint", "gain"], t, rtol=1e-15)
     # Rates that are given count, and the chain rule makes those of a square.
     square = biela.loads(FOLLOWER.replace("gain*setpoint", "gain*setpoint^2"))
     s, v, a = np.array([0.1, 0.4]), np.array([1.0, -2.0]), np.array([3.0, 0.5])

@@ -355,6 +355,7 @@ impl Runner {
         }
         let orders = columns.iter().map(|column| match column.source {
             OutputSource::Signal(_, order) => order,
+            OutputSource::Input(_) => Order::Position,
             OutputSource::Derived(_) | OutputSource::Force(_) => Order::Acceleration,
         });
         let highest = orders.max();

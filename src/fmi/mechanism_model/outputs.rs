@@ -89,6 +89,7 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
             (DERIVED, measure.order())
         }
         Quantity::Output(OutputSource::Signal(signal, order)) => (group_of(signal), order),
+        Quantity::Output(OutputSource::Input(_)) => unreachable!("a host has inputs already"),
         Quantity::State(_, order) => (COORDINATES, order),
         Quantity::Clearance(_) => (COORDINATES, Order::Position),
         Quantity::EventIndicator(_) | Quantity::Touching(_) => (COORDINATES, Order::Acceleration),

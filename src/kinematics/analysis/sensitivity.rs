@@ -66,6 +66,7 @@ pub struct Sensitivity<'a> {
     curves: CurvesAlong,
     drivers: Vec<Varied>,
     parameters: Vec<Varied>,
+    time: Dual,
     measures: &'a [Box<dyn Constraint>],
     /// The file's coordinates of freedoms that are followed in others.
     named: &'a [Option<Box<dyn Constraint>>],
@@ -132,6 +133,13 @@ impl Sensitivity<'_> {
     #[must_use]
     pub fn parameter(&self, parameter: ParameterId) -> f64 {
         self.parameters[parameter.index()].value.first()
+    }
+
+    /// Returns the change of an input: that of what gives it, none of one that comes from outside.
+    pub(in crate::kinematics) fn input(&self, index: usize) -> f64 {
+        let given = self.system.mechanism().inputs[index].given.as_ref();
+        let parameter = |id: ParameterId| self.parameter_value(id);
+        given.map_or(0.0, |size| size.evaluate(&parameter, self.time).first())
     }
 
     /// Returns the largest scaled change of q, or of the first of its derivatives that changes.
@@ -490,6 +498,7 @@ impl State {
             curves,
             drivers,
             parameters,
+            time: Dual::new(self.pose.time, [direction.time]),
             measures: &compiled.measures,
             named: &compiled.named,
             system,

@@ -65,6 +65,8 @@ pub enum OutputSource {
     Derived(usize),
     /// A force, an energy or an inertia.
     Force(ForceQuantity),
+    /// An input of the file, by its index.
+    Input(usize),
 }
 
 impl OutputSource {
@@ -119,6 +121,7 @@ impl OutputSource {
             Self::Force(quantity) => {
                 return forces.map_or(Ok(f64::NAN), |(_, changes)| changes.change(quantity));
             }
+            Self::Input(index) => sensitivity.input(index),
         };
         if change.is_finite() {
             Ok(change)
@@ -131,7 +134,7 @@ impl OutputSource {
     #[must_use]
     pub fn uses_forces(self, mechanism: &Mechanism) -> bool {
         match self {
-            Self::Signal(..) => false,
+            Self::Signal(..) | Self::Input(_) => false,
             Self::Derived(index) => mechanism.derived[index].uses_forces(),
             Self::Force(_) => true,
         }
@@ -149,7 +152,7 @@ impl OutputSource {
 
 impl Output {
     /// Returns value, velocity and acceleration of every driver, then those of a
-    /// [host](Self::of_host), and last the sizes of forces that are inputs.
+    /// [host](Self::of_host), then the sizes of forces that are inputs, and last the inputs of the file.
     #[must_use]
     pub fn all(mechanism: &Arc<Mechanism>) -> Vec<Self> {
         let mut list = List::default();
@@ -161,6 +164,15 @@ impl Output {
         list.add_derived_and_forces(mechanism, &omitted);
         let inputs = mechanism.force_inputs().into_iter();
         list.add_forces(inputs.map(|input| NamedForce::of(input, mechanism)));
+        let inputs = mechanism.inputs.iter().enumerate();
+        list.0.extend(inputs.map(|(index, input)| Self {
+            name: input.name.clone(),
+            description: input.description.clone(),
+            source: OutputSource::Input(index),
+            unit: input.unit.unwrap_or(Unit::ONE),
+            needs: ForceNeed::None,
+            derivative_of: None,
+        }));
         list.0
     }
 
@@ -189,7 +201,8 @@ impl Output {
     }
 
     /// Returns the value at the solver's pose \[SI\], not a number for a force, and for a measure that
-    /// uses one, unless `forces` are there. See [`Solver::signal`].
+    /// uses one, unless `forces` are there. Inputs are among `loads`. See
+    /// [`Solver::signal`].
     #[inline]
     #[must_use]
     pub fn value(
@@ -198,6 +211,7 @@ impl Output {
         rates: &Rates,
         driver_rates: &[Jet],
         forces: Option<&Forces>,
+        loads: &[f64],
     ) -> f64 {
         match self.source {
             OutputSource::Signal(signal, order) => {
@@ -207,6 +221,10 @@ impl Output {
             OutputSource::Force(quantity) => {
                 forces.map_or(f64::NAN, |forces| forces.value(quantity))
             }
+            OutputSource::Input(index) => {
+                let pose = solver.pose();
+                (solver.mechanism()).input_value(index, &pose.parameters, loads, pose.time)
+            }
         }
     }
 
@@ -215,7 +233,9 @@ impl Output {
     #[must_use]
     pub fn is_told(&self) -> bool {
         match self.source {
-            OutputSource::Signal(Signal::Body(..), _) | OutputSource::Force(_) => false,
+            OutputSource::Signal(Signal::Body(..), _)
+            | OutputSource::Force(_)
+            | OutputSource::Input(_) => false,
             OutputSource::Signal(_, order) => order == Order::Position,
             OutputSource::Derived(_) => true,
         }

@@ -53,8 +53,7 @@ pub struct Solution {
     pub rates: Rates,
     /// Value, velocity and acceleration of each driver, for which rates and forces are solved.
     pub driver_rates: Vec<Jet>,
-    /// Sizes of the forces without a law \[SI\], [inputs and passive forces](Forces::loads); empty
-    /// unless forces are sought.
+    /// Inputs, and sizes of the forces without a law \[SI\]: [inputs and passive forces](Forces::loads).
     pub loads: Vec<f64>,
     forces: Option<Forces>,
     /// The parts of the forces that are sought.
@@ -79,11 +78,13 @@ impl Solution {
     /// Makes the storage for a solver's mechanism; all drivers are at rest.
     #[must_use]
     pub fn new(solver: &Solver) -> Self {
-        let pose = solver.pose();
+        let (pose, mechanism) = (solver.pose(), solver.mechanism());
+        let mut loads = vec![0.0; mechanism.load_places().1];
+        mechanism.write_load_starts(&mut loads);
         Self {
             rates: Rates::new(pose.q.len()),
             driver_rates: pose.drivers.iter().map(|u| Jet::constant(*u)).collect(),
-            loads: Vec::new(),
+            loads,
             forces: None,
             parts: ForceParts::ALL,
             friction: Friction::default(),
@@ -91,13 +92,9 @@ impl Solution {
         }
     }
 
-    /// Seeks forces too, from the next [`solve`](Self::solve) on. Those that are inputs have the values of
-    /// their start.
+    /// Seeks forces too, from the next [`solve`](Self::solve) on.
     pub fn seek_forces(&mut self, solver: &Solver) {
-        let forces = solver.forces();
-        self.loads = vec![0.0; forces.loads()];
-        solver.mechanism().write_load_starts(&mut self.loads);
-        self.forces = Some(forces);
+        self.forces = Some(solver.forces());
         if !solver.mechanism().has_freedoms() {
             self.friction = solver.friction();
             self.rubbed = rubbed(solver);
@@ -222,7 +219,13 @@ impl Solution {
     /// Returns the value of an output \[SI\], not a number for a force that is not sought.
     #[must_use]
     pub fn value(&self, solver: &Solver, output: &Output) -> f64 {
-        output.value(solver, &self.rates, &self.driver_rates, self.forces())
+        let Self {
+            rates,
+            driver_rates,
+            loads,
+            ..
+        } = self;
+        output.value(solver, rates, driver_rates, self.forces(), loads)
     }
 
     /// Returns the changes of outputs along a direction \[SI\], not a number for forces that are

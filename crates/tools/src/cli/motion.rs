@@ -125,9 +125,7 @@ impl SignalledMotion {
             }
         }
         motion.take_rates();
-        if motion.solution.forces().is_some() {
-            signals.write_forces(time, &mut motion.solution.loads);
-        }
+        signals.write_loads(time, &mut motion.solution.loads);
         motion.solve()?;
         self.note();
         Ok(())

@@ -443,6 +443,7 @@ impl Session {
     pub(super) fn value(&self, output: &Output) -> f64 {
         let needs_rates = match output.source {
             OutputSource::Signal(_, order) => order != Order::Position,
+            OutputSource::Input(_) => false,
             OutputSource::Derived(index) => {
                 self.mechanism().derived[index].order() != Order::Position
             }

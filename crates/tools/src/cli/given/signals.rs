@@ -152,8 +152,8 @@ impl Signals {
         Some(jet)
     }
 
-    /// Writes the inputs of forces at a time; those without a signal are left as they are.
-    pub(in crate::cli) fn write_forces(&self, time: f64, inputs: &mut [f64]) {
+    /// Writes the inputs at a time, those of forces too; those without a signal are left as they are.
+    pub(in crate::cli) fn write_loads(&self, time: f64, inputs: &mut [f64]) {
         for (target, values) in &self.columns {
             if let ColumnInput::Force(input) = *target {
                 inputs[input] = self.interpolate(values, time).value;

@@ -562,6 +562,11 @@ fn a_driver_that_follows_an_input_is_moved_by_its_column() {
                 assert!(off < tolerance, "{is_free} {name} {row}: {found} {truth}");
             }
         }
+        // The input has a column, behind all others: the later value where it jumps.
+        let header = found.lines().next().expect("there is one");
+        assert!(header.ends_with(",setpoint"), "{header}");
+        let setpoint = column(&found, "setpoint");
+        assert!(near(&setpoint[..3], &[0.1, 0.1375, 0.175]), "{setpoint:?}");
         let moved = column(&found, "x.velocity");
         assert!((moved[1] - 0.6).abs() < 1e-13, "{moved:?}");
     }
@@ -571,6 +576,17 @@ fn a_driver_that_follows_an_input_is_moved_by_its_column() {
     let found = stdout(&found.success());
     let motion = ["--drive", "setpoint = 0.1 + 0.2*t"];
     let truth = stdout(&run(&follower, "", &motion).success());
+    assert!(near(
+        &column(&truth, "setpoint"),
+        &column(&found, "setpoint")
+    ));
+    let alone = stdout(&run(&follower, "", &["-v", "setpoint"]).success());
+    assert_eq!(alone.lines().next(), Some("time,setpoint"));
+    assert!(
+        column(&alone, "setpoint")
+            .iter()
+            .all(|value| near(&[*value], &[0.1]))
+    );
     for name in names {
         let pairs = column(&found, name).into_iter().zip(column(&truth, name));
         for (found, truth) in pairs {
