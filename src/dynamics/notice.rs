@@ -148,6 +148,16 @@ impl Motion {
         if let Some(forces) = self.solution.forces() {
             forces.visit_beyond(pose, loads, &mut meet);
         }
+        let followers = (mechanism.drivers.iter()).filter(|driver| driver.is_moved_by_inputs());
+        for follows in followers.filter_map(|driver| driver.follows.as_ref()) {
+            let variable = |variable| match variable {
+                Variable::Input(index) => {
+                    mechanism.input_value(index, &pose.parameters, loads, pose.time)
+                }
+                _ => pose.time,
+            };
+            follows.visit_beyond(&parameter, &variable, &mut meet);
+        }
         for measure in &mechanism.derived {
             let variable = |variable| match variable {
                 Variable::Signal(signal, order) => {

@@ -602,3 +602,36 @@ fn a_driver_that_follows_an_input_is_moved_by_its_column() {
         "{accelerations:?}"
     );
 }
+
+/// A function by which a driver follows an input is told where its table leaves the points, once; not one
+/// that says what holds there.
+#[test]
+fn a_function_of_what_follows_an_input_is_told_beyond_its_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, table] = ["carrier.toml", "table.csv"].map(|name| folder.path().join(name));
+    std::fs::write(&table, "time,setpoint\n0,0.1\n2,0.5\n").unwrap();
+    let told = |ends: &str| {
+        let law = format!(
+            "[functions]\ncurve = {{ table = [[0, 0], [0.3, 1]], law = \"linear\"{ends} }}\n"
+        );
+        let text = carrier("motion = \"curve(setpoint)\"", false).replace("gain = 2\n", "") + &law;
+        std::fs::write(&file, text).unwrap();
+        let arguments = [
+            "run",
+            file.to_str().unwrap(),
+            "--input",
+            table.to_str().unwrap(),
+        ];
+        let more = ["--stop", "2", "--step", "0.125"];
+        stderr(&biela(&[&arguments[..], &more].concat()).success())
+    };
+    let beyond = "function `curve` is called at ";
+    let found = told("");
+    // 0.1 + 0.2 t passes 0.3 after 1 s.
+    assert!(
+        found.contains("t = 1.125 s: function `curve` is called at 0.325, beyond"),
+        "{found}"
+    );
+    assert_eq!(found.matches(beyond).count(), 1, "{found}");
+    assert!(!told(", ends = \"periodic\"").contains(beyond));
+}
