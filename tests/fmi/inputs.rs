@@ -168,6 +168,55 @@ fn a_value_beyond_its_limit_is_told() {
     );
 }
 
+/// A function that leaves its points is told once, with its instant; not where its points repeat.
+#[test]
+fn a_function_beyond_its_points_is_advice() {
+    let told = |ends: &str| {
+        let mechanism = parse(&format!(
+            r#"
+format = 1
+name = "block"
+[inputs]
+level = {{ start = 0 }}
+[functions]
+curve = {{ table = [[0, 0], [0.25, 1], [0.5, 3]]{ends} }}
+[ground.markers]
+O = [0, 0]
+[bodies.block]
+markers = {{ B = [0, 0] }}
+mass = 2
+[joints]
+guide = {{ type = "translational", markers = ["ground.O", "block.B"] }}
+[freedoms]
+x = {{ coordinate = "x", markers = ["ground.O", "block.B"] }}
+[forces]
+motor = {{ coordinate = "x", markers = ["ground.O", "block.B"], value = "curve(t)" }}
+"#
+        ));
+        let heard = Heard::default();
+        let mut instance = started(heard.instance(mechanism, Interface::CoSimulation, true));
+        for step in 0..10 {
+            instance
+                .do_step(0.1 * f64::from(step), 0.1)
+                .expect("it moves");
+        }
+        let told = heard.take(biela::fmi::Category::Warning);
+        let told = told
+            .into_iter()
+            .filter(|text| text.contains("function `curve`"));
+        told.collect::<Vec<_>>()
+    };
+    let once = told("");
+    assert_eq!(once.len(), 1, "{once:?}");
+    assert!(
+        once[0].contains("beyond its points from 0 to 0.5"),
+        "{once:?}"
+    );
+    // Within the step from 0.5 s to 0.6 s.
+    assert!(once[0].contains("t = 0.5"), "{once:?}");
+    assert!(told(", ends = \"periodic\"").is_empty());
+}
+
 /// A saved state goes on with the same bits, also beside a corner of a force and behind the bounce at a stop.
 #[test]
 fn a_servo_goes_on_from_a_saved_state() {
