@@ -141,6 +141,8 @@ def test_a_mechanism_tells_its_parts(ball, mechanism):
     forces = ball.forces
     assert {"wind.effort", "table.effort"} <= set(forces) and "lift.effort" not in forces
     assert forces["table.effort"].value == 0.0 and forces["table.effort"].unit == "N"
+    goal = mechanism("servo_arm").inputs["goal"]
+    assert (goal.unit, goal.start, goal.min, goal.max) == ("rad", *np.radians([60, -60, 60]))
     four_bar = mechanism("four_bar")
     assert list(four_bar.drivers) == ["crank_angle"] and four_bar.freedoms == four_bar.inputs == {}
     measure = four_bar.measures["transmission"]

@@ -197,8 +197,8 @@ class Mechanism:
 
     @property
     def inputs(self) -> dict[str, Input]:
-        """Forces whose sizes a run may give, by the names that they have there."""
-        return {row[0]: Input(*row[:3]) for row in self._inner.inputs}
+        """Inputs of the file, then forces whose sizes a run may give, by the names that they have there."""
+        return {row[0]: Input(*row) for row in self._inner.inputs}
 
     @property
     def measures(self) -> dict[str, Measure]:

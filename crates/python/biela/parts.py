@@ -58,11 +58,15 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Input:
-    """Size of a force that `drive` or `inputs` may give; zero otherwise."""
+    """Input, or size of a force, that `drive` or `inputs` may give."""
 
     name: str
     description: str
     unit: str
+    start: float
+    """Value where nobody gives one, zero for a force."""
+    min: float | None
+    max: float | None
 
 
 @dataclass(frozen=True)

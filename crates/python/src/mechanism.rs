@@ -20,8 +20,9 @@ use crate::error::{Failure, exception};
 use crate::fit::Targets;
 use crate::follower::{Fit, WantedValues};
 use crate::rows::{
-    DriverRow, EquilibriumRow, LinearRow, NamedRow, ParameterRow, Problem, RangeRow, driver_row,
-    equilibrium_row, forces, inputs, linear_row, measures, parameter_row, problems, range_row,
+    DriverRow, EquilibriumRow, InputRow, LinearRow, NamedRow, ParameterRow, Problem, RangeRow,
+    driver_row, equilibrium_row, forces, inputs, linear_row, measures, parameter_row, problems,
+    range_row,
 };
 use crate::run::{Run, run};
 use crate::runner::Runner;
@@ -167,7 +168,7 @@ impl Mechanism {
     }
 
     #[getter]
-    fn inputs(&self) -> Vec<NamedRow> {
+    fn inputs(&self) -> Vec<InputRow> {
         inputs(&self.model)
     }
 

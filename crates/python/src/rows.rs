@@ -3,7 +3,7 @@
 use biela::dynamics::{Equilibrium, Held, StateSpace};
 use biela::kinematics::{End, Extreme, Pose};
 use biela::mechanism::{
-    Diagnostic, Driver, DriverId, ForceComponent, Mechanism, Parameter, Source, Unit,
+    Diagnostic, Driver, DriverId, ForceComponent, LoadInput, Mechanism, Parameter, Source, Unit,
 };
 use biela_tools::cli::{self, ToldRange};
 use numpy::{IntoPyArray, PyArray1};
@@ -44,7 +44,10 @@ pub(crate) type DriverRow = (
     Option<f64>,
 );
 
-/// An input, a force or a measure: name, description, unit, and the variable that has its value.
+/// An input: name, description, unit, value where nobody gives one, limits.
+pub(crate) type InputRow = (String, String, String, f64, Option<f64>, Option<f64>);
+
+/// A force or a measure: name, description, unit, and the variable that has its value.
 pub(crate) type NamedRow = (String, String, String, String);
 
 /// Name, force and description of what holds a coordinate.
@@ -135,10 +138,15 @@ pub(crate) fn driver_row(d: &Driver) -> DriverRow {
     )
 }
 
-/// Returns the inputs of forces as rows.
-pub(crate) fn inputs(mechanism: &Mechanism) -> Vec<NamedRow> {
-    let inputs = mechanism.force_inputs().into_iter();
-    inputs.map(force_row).collect()
+/// Returns inputs, those of forces behind those of the file, as rows.
+pub(crate) fn inputs(mechanism: &Mechanism) -> Vec<InputRow> {
+    let inputs = mechanism.load_inputs().into_iter();
+    let row = |input: LoadInput| {
+        let unit = input.unit.unwrap_or(Unit::ONE).name.to_string();
+        let [min, max] = input.limits;
+        (input.name, input.description, unit, input.start, min, max)
+    };
+    inputs.map(row).collect()
 }
 
 /// Returns the forces that are no inputs as rows.
