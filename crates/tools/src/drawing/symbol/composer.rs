@@ -28,6 +28,9 @@ pub(in crate::drawing) fn compose(
     for driver in &mechanism.drivers {
         composer.driver(driver);
     }
+    for stop in &mechanism.stops {
+        end_stop::compose(&mut composer, stop);
+    }
     for force in &mechanism.forces {
         composer.force(force);
     }
@@ -188,7 +191,7 @@ impl<'a> Composer<'a> {
     }
 
     /// Returns the axis along which a length is measured, `None` for a distance.
-    fn axis(&self, coordinate: &Coordinate) -> Option<Anchor> {
+    pub(super) fn axis(&self, coordinate: &Coordinate) -> Option<Anchor> {
         let axes = self.anchor(coordinate.axes);
         match coordinate.kind {
             CoordinateKind::X => Some(axes),

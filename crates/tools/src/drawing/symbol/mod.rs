@@ -148,6 +148,7 @@ symbols! { composer, ends:
     face: Face;
     angle_driver: AngleDriver;
     length_driver: LengthDriver;
+    end_stop: EndStop;
     spring: Spring;
     torsion: Torsion;
     load: LoadArrow;

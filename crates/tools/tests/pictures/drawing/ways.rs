@@ -48,3 +48,32 @@ fn prescribed_motions_are_followed_until_the_stop_time() {
     let [low, high] = way.expect("the cart is guided");
     assert!(near(low, 0.0) && near(high, 0.3));
 }
+
+#[test]
+fn stops_have_the_points_that_meet_them() {
+    let text = r#"
+        format = 1
+        name = "bolt"
+        [ground.markers]
+        O = [0, 0]
+        [bodies.bolt]
+        markers = { C = [0, 0], tip = [0.3, 0], heel = [-0.1, 0] }
+        mass = 1
+        inertia = 1
+        [joints]
+        way = { type = "translational", markers = ["ground.O", "bolt.C"] }
+        [freedoms]
+        throw = { coordinate = "x", markers = ["ground.O", "bolt.C"], start = 0.1 }
+        [stops]
+        ends = { of = "throw", min = 0, max = 0.2 }
+    "#;
+    let scene = scene_of(text);
+    let limits = scene.symbols.iter().find_map(|s| match s {
+        Symbol::EndStop(stop) => Some(stop.limits),
+        _ => None,
+    });
+    let [least, most] = limits.expect("there is a stop");
+    let [(least, heel), (most, tip)] = [least, most].map(|limit| limit.expect("it is given"));
+    assert!(near(least, 0.0) && near(most, 0.2));
+    assert!(near(heel.position[0], -0.1) && near(tip.position[0], 0.3));
+}
