@@ -164,9 +164,12 @@ fn libraries(out: &mut String) {
     let release = std::env::current_exe().expect("this program runs from a file");
     let target = release.ancestors().nth(2).expect("it is in target/release");
     let row = |(what, file): (&str, &str)| {
-        let size = std::fs::metadata(target.join(file)).ok();
-        let size = or_not_run(size, |size| format!("{:.2} MB", size.len() as f64 * 1e-6));
-        [what.to_owned(), size]
+        let size = std::fs::metadata(target.join(file));
+        let size = size.map(|size| format!("{:.2} MB", size.len() as f64 * 1e-6));
+        [
+            what.to_owned(),
+            size.unwrap_or_else(|_| "not built (`make page`)".to_owned()),
+        ]
     };
     let library = format!("release/{DLL_PREFIX}biela_runtime{DLL_SUFFIX}");
     table(
