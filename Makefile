@@ -33,8 +33,8 @@ SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 CARGO_SOURCES = $(or $(CARGO_HOME),$(HOME)/.cargo)/registry/src
 BUILD = $(CARGO) build --release --locked --config 'target."cfg(all())".rustflags = \
     ["--remap-path-prefix=$(CARGO_SOURCES)=crates", "--remap-path-prefix=$(CURDIR)=biela"]'
-# As optimised as the tests, whose build it shares.
-MODULE = $(CARGO) build --workspace --lib --locked && \
+# As optimised as the tests, whose build it shares: with examples, as cargo chooses features by what is built.
+MODULE = $(CARGO) build --workspace --lib --examples --locked && \
     install -m 755 target/debug/$(BUILT_MODULE) crates/python/biela/_biela.abi3.so
 # What checks the types of the scripts in pages.
 TYPESCRIPT := typescript@7.0.2
@@ -66,7 +66,7 @@ demo test refresh test-platforms: export BIELA_BIN := $(CURDIR)/target/release/b
 test: setup ## run all tests: Rust, documentation, FMPy; of those in a browser a few
 	@if $(CARGO) nextest --version >/dev/null 2>&1; then \
 	    echo '$(CARGO) nextest run --workspace --locked' && $(CARGO) nextest run --workspace --locked && \
-	    echo '$(CARGO) test --doc --locked' && $(CARGO) test --doc --locked; \
+	    echo '$(CARGO) test --doc --workspace --locked' && $(CARGO) test --doc --workspace --locked; \
 	else \
 	    echo '$(CARGO) test --workspace --locked' && $(CARGO) test --workspace --locked; \
 	fi
