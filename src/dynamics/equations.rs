@@ -7,6 +7,7 @@ use super::free_state::FreeState;
 use super::gaps::GapWatch;
 use super::given::Given;
 use super::passive::{Passive, PassiveForces};
+use super::strike::Strike;
 use super::triangular::{ascend, descend};
 use super::turns::Turns;
 use super::watch::{Verdict, Watch};
@@ -48,6 +49,8 @@ pub(super) struct Equations {
     /// Rates of q for the reactions of joints with friction.
     rates: Rates,
     pub(super) watch: Watch,
+    /// The strikes at the last event, where the motion has directions.
+    pub(super) strikes: Vec<Strike>,
     pub(super) turns: Turns,
     /// Per function of the file: the first time \[s\] of an accepted point at which a force has called it
     /// beyond its points, since this was asked last.
@@ -130,6 +133,7 @@ impl Equations {
             factor: DMatrix::zeros(count, count),
             accelerations: vec![0.0; count],
             watch: Watch::new(&passive),
+            strikes: Vec::new(),
             turns: Turns::new(
                 solver
                     .mechanism()
@@ -242,7 +246,7 @@ impl Equations {
         let Some(turn) = self.turns.judge(times, self.forces.corners()) else {
             return verdict;
         };
-        self.watch.is_event = false;
+        self.watch.ended.clear();
         match verdict {
             Verdict::Ends(time) => Verdict::Ends(time.min(turn)),
             Verdict::Lasts | Verdict::Unclear => Verdict::Ends(turn),
@@ -251,11 +255,11 @@ impl Equations {
 
     /// Returns whether the motion ceases to be smooth at the accepted point.
     pub(super) fn is_at_event(&self) -> bool {
-        self.watch.is_event || self.turns.is_event
+        !self.watch.ended.is_empty() || self.turns.is_event
     }
 
     /// Proves that one motion joins the accepted pose and that at the present point, and that no gap closes
-    /// on the way; [`is_event`](Watch::is_event) and the time at which the step must end tell otherwise.
+    /// on the way; [`ended`](Watch::ended) and the time at which the step must end tell otherwise.
     ///
     /// Without gaps a mechanism with one driver needs no proof. With several, or with open curves, trials on
     /// the way may have led round a place at which two assembly modes meet, or to the end of a curve.

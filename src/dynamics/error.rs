@@ -36,12 +36,14 @@ pub enum Error {
     NoFreedom,
     /// Derivatives along a motion end at its first event.
     #[error(
-        "the derivatives of the motion end at t = {} s, where it meets a stop or friction changes",
+        "the derivatives of the motion end at t = {} s, {reason}",
         fixed(*.time, 9)
     )]
     NoDerivatives {
         /// Time of the event \[s\].
         time: f64,
+        /// The end of the sentence: where it is.
+        reason: &'static str,
     },
     /// The [budget](kinematics::Budget) is spent.
     #[error(

@@ -13,9 +13,10 @@ use super::event::{Event, EventKind, Meeting};
 use super::given::Given;
 use super::passive::{Mode, TOUCHED};
 use super::settle::Touch;
+use super::strike::{Push, Strike};
 use super::triangular::ascend;
 use crate::kinematics::{Solver, StopLimit};
-use crate::mechanism::{Force, Load, Mechanism, Order, PassiveCause, fixed};
+use crate::mechanism::{Dual, Force, Load, Mechanism, Order, ParameterId, PassiveCause, fixed};
 
 /// Height of a bounce at which bouncing ends, in gaps that are rounding: some roundings of a place.
 const LOWEST_BOUNCE: f64 = 1.0 / 16.0;
@@ -71,12 +72,15 @@ impl Equations {
                 }
                 return Ok(rest);
             }
+            let parameters = &solver.pose().parameters;
+            let parameter = |id: ParameterId| Dual::constant(parameters[id.index()]);
             let hits = touches.iter().map(|touch| Hit {
                 touch: *touch,
                 speed: -self.opening(*touch)[0],
                 closes: closes(touch),
                 restitution: if closes(touch) {
-                    self.passive.list[touch.force].cause.restitution(solver)
+                    let cause = &self.passive.list[touch.force].cause;
+                    cause.restitution(solver.mechanism(), &parameter).value
                 } else {
                     0.0
                 },
@@ -102,6 +106,7 @@ impl Equations {
                 impulses = self.strike_again(solver, given, &hits, (time, &start), x)?;
             }
             x[2 * self.freedoms.len()] += self.point.energy - energy;
+            self.note_strike(&hits, &impulses, [&start, x]);
             let struck = hits.iter().zip(&impulses);
             let struck = struck.filter(|(hit, impulse)| **impulse > 0.0 && hit.tells());
             let first = events.len();
@@ -218,6 +223,30 @@ impl Equations {
             hits[k].rests = true;
         }
         Ok(!tired.is_empty())
+    }
+
+    /// Notes a strike between two values of x, if its changes along directions are sought.
+    fn note_strike(&mut self, hits: &[Hit], impulses: &[f64], x: [&[f64]; 2]) {
+        if self.directions.is_empty() {
+            return;
+        }
+        let pushing = hits.iter().zip(impulses);
+        let pushing = pushing.filter(|(_, impulse)| **impulse > 0.0);
+        let pushes = pushing.map(|(hit, impulse)| {
+            let Touch { force, side } = hit.touch;
+            Push {
+                force,
+                impulse: side.sign() * impulse,
+                rate: -side.sign() * hit.speed,
+                restitution: (hit.closes && !hit.rests).then_some(hit.restitution),
+            }
+        });
+        let count = self.freedoms.len();
+        let strike = Strike {
+            velocities: x.map(|x| x[count..2 * count].to_vec()),
+            pushes: pushes.collect(),
+        };
+        self.strikes.push(strike);
     }
 
     /// Strikes from a start of the velocities.

@@ -31,6 +31,8 @@
 //! | `settle` | the modes after an event |
 //! | `choose` | the choice of what is held after an event |
 //! | `variations` | the changes of a motion along directions |
+//! | `strike` | velocities before and after a strike |
+//! | `saltation` | those changes at events |
 //! | `trials` | the system that the integrator steps |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |
 //! | `starts` | the [start](KeptStart) that a motion keeps |
@@ -64,10 +66,12 @@ mod moving;
 mod notice;
 mod overlap;
 mod passive;
+mod saltation;
 mod settle;
 mod stages;
 mod starts;
 mod statics;
+mod strike;
 mod told;
 mod trials;
 mod triangular;

@@ -479,17 +479,13 @@ impl FreeMotion {
                 .map_err(Error::from)
             {
                 Ok(_) if self.equations.is_at_event() => {
-                    // A corner of a force bends the changes along directions, which go on.
-                    let Equations { watch, turns, .. } = &self.equations;
-                    let jumps = watch.is_event || turns.jumps;
-                    if jumps && !self.equations.directions.is_empty() {
-                        return Err(Error::NoDerivatives {
-                            time: solver.pose().time,
-                        });
-                    }
-                    self.x.copy_from_slice(&self.integrator.state().x);
-                    self.equations.turns.begin();
+                    let Self { equations, x, .. } = self;
+                    x.copy_from_slice(&self.integrator.state().x);
+                    let delays = equations.reach_event(solver, given, x)?;
+                    equations.turns.begin();
                     self.settle(solver, given)?;
+                    let Self { equations, x, .. } = self;
+                    equations.leave_event(solver, given, &delays, x)?;
                     self.go_on(solver, given)?;
                     if ends_at_event {
                         return Ok(());
@@ -526,7 +522,8 @@ impl FreeMotion {
         time: f64,
     ) -> Result<(), Error> {
         if !self.equations.directions.is_empty() {
-            return Err(Error::NoDerivatives { time });
+            let reason = "where the velocity of a driver jumps";
+            return Err(Error::NoDerivatives { time, reason });
         }
         self.x.copy_from_slice(&self.integrator.state().x);
         self.equations

@@ -14,7 +14,7 @@ use super::triangular::{ascend, descend};
 use crate::kinematics::{
     Direction, ForceQuantity, ForceSensitivity, KnownMotion, Rates, Sensitivity, Solver,
 };
-use crate::mechanism::Jet;
+use crate::mechanism::{DriverId, Jet};
 
 impl Equations {
     /// Returns the number of changes that stand behind the values of x.
@@ -34,8 +34,8 @@ impl Equations {
         }
     }
 
-    /// Returns the directions with the changes in x, and those of the accelerations that follow, at the
-    /// point at which accelerations were solved last. Solves its rates.
+    /// Returns the directions with the changes in x, and those of accelerations and passive forces that
+    /// follow, at the point at which accelerations were solved last. Solves its rates.
     pub(super) fn varied(
         &mut self,
         solver: &mut Solver,
@@ -55,9 +55,10 @@ impl Equations {
         if self.complete_all(solver, rates, &mut varied)? {
             return Ok(varied);
         }
-        let mut still = vec![0.0; self.point.loads.len()];
         for direction in &mut varied {
-            self.complete(solver, rates, direction, &mut still)?;
+            let mut loads = vec![0.0; self.point.loads.len()];
+            self.complete(solver, rates, direction, &mut loads)?;
+            direction.loads = loads;
         }
         Ok(varied)
     }
@@ -89,15 +90,16 @@ impl Equations {
             inputs: &point.loads,
         };
         let (loads, of_passive) = (point.loads.len(), point.loads.len() - passive.loads());
-        let mut coordinates = Vec::with_capacity(directions.len());
+        let mut found = Vec::with_capacity(directions.len());
         let mut efforts = Vec::with_capacity(directions.len() * freedoms.len());
         let inputs = |_: usize, sensitivity: &Sensitivity<'_>| {
             let mut changes = vec![0.0; loads];
-            coordinates.push(if passive.is_empty() {
+            let coordinates = if passive.is_empty() {
                 Vec::new()
             } else {
                 passive.changes(sensitivity, None, &mut changes[of_passive..])
-            });
+            };
+            found.push((coordinates, changes.clone()));
             changes
         };
         let sought = (&**freedoms, &*directions);
@@ -107,13 +109,14 @@ impl Equations {
         if !done {
             return Ok(false);
         }
-        let mut holding = vec![0.0; loads - of_passive];
-        let efforts = efforts.chunks_exact(freedoms.len()).zip(&coordinates);
-        for (direction, (efforts, coordinates)) in directions.iter_mut().zip(efforts) {
+        let efforts = efforts.chunks_exact(freedoms.len()).zip(found);
+        for (direction, (efforts, (coordinates, loads))) in directions.iter_mut().zip(efforts) {
+            direction.loads = loads;
             for (change, effort) in accelerations.iter_mut().zip(efforts) {
                 *change = -effort;
             }
-            solve_changes(passive, coordinates, factor, accelerations, &mut holding);
+            let holding = &mut direction.loads[of_passive..];
+            solve_changes(passive, &coordinates, factor, accelerations, holding);
             for (change, freedom) in accelerations.iter().zip(&*freedoms) {
                 direction.drivers[freedom.index()].derivatives[1] = *change;
             }
@@ -255,25 +258,26 @@ impl Equations {
 
     /// Sets a direction to the changes in time of all that is given, and returns those of the inputs
     /// of forces.
-    fn drift(
+    pub(super) fn drift(
         &self,
         solver: &Solver,
         given: &impl Given,
         t: f64,
         direction: &mut Direction,
     ) -> Vec<f64> {
-        /// Part of the time, or of a second, over which loads are differenced: they are polynomials
-        /// of low degree, so that rounding decides.
+        /// Part of the time, or of a second, over which loads and accelerations are differenced: they are
+        /// polynomials of low degree, so that rounding decides.
         const INCREMENT: f64 = 1e-6;
         direction.time = 1.0;
+        let later = t + INCREMENT * t.abs().max(1.0);
         let definitions = solver.mechanism().drivers.iter().enumerate();
         for (index, driver) in definitions {
             if driver.is_given() {
                 let [velocity, acceleration] = self.point.drivers[index].derivatives;
-                direction.drivers[index] = Jet::new(velocity, [acceleration, 0.0]);
+                let rise = given.driver(DriverId(index), later).second() - acceleration;
+                direction.drivers[index] = Jet::new(velocity, [acceleration, rise / (later - t)]);
             }
         }
-        let later = t + INCREMENT * t.abs().max(1.0);
         let mut loads = self.point.loads.clone();
         given.loads(later, &mut loads[..self.inputs()]);
         for (load, now) in loads.iter_mut().zip(&self.point.loads) {

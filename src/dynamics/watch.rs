@@ -33,8 +33,8 @@ const STALLED: f64 = 1e-9;
 /// The search along a motion.
 #[derive(Debug)]
 pub(super) struct Watch {
-    /// Whether a mode ends at the accepted point.
-    pub(super) is_event: bool,
+    /// The functions that end modes at the accepted point.
+    pub(super) ended: Vec<usize>,
     /// Steps cut in a row.
     cuts: i32,
     /// Length of the last step on the way to a zero if the function was the same to the bit at both ends
@@ -71,7 +71,7 @@ impl Watch {
     /// Makes the storage.
     pub(super) fn new(forces: &PassiveForces) -> Self {
         Self {
-            is_event: false,
+            ended: Vec::with_capacity(forces.list.len() * FUNCTIONS),
             cuts: 0,
             stall: 0.0,
             beyond: None,
@@ -82,7 +82,8 @@ impl Watch {
 
     /// Begins at a point.
     pub(super) fn begin(&mut self) {
-        (self.is_event, self.cuts, self.stall, self.beyond) = (false, 0, 0.0, None);
+        self.ended.clear();
+        (self.cuts, self.stall, self.beyond) = (0, 0.0, None);
         self.stages.forget();
     }
 
@@ -97,7 +98,7 @@ impl Watch {
         let is_shortest = self.is_shortest([start, end]);
         let mut first: Option<(f64, Beyond)> = None;
         let mut is_clear = true;
-        self.is_event = false;
+        self.ended.clear();
         for index in 0..forces.list.len() * FUNCTIONS {
             let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
             let [before, after] = [from, to].map(|at| forces.function(force, &at[force], side));
@@ -124,7 +125,9 @@ impl Watch {
                 }
                 continue;
             }
-            self.is_event |= before.ends_at(&after);
+            if before.ends_at(&after) {
+                self.ended.push(index);
+            }
             if known.is_some() {
                 // Over a longer step the function is the same as nothing moves.
                 let is_short = h <= STALLED * start.abs().max(end.abs());
@@ -154,7 +157,7 @@ impl Watch {
                 Verdict::Ends(time)
             }
             None => {
-                self.is_event = true;
+                self.ended.push(beyond.index);
                 Verdict::Lasts
             }
         }
@@ -170,7 +173,7 @@ impl Watch {
 
     /// Counts a step that is cut for a gap.
     pub(super) fn cut(&mut self) {
-        self.is_event = false;
+        self.ended.clear();
         self.cuts += 1;
     }
 

@@ -25,8 +25,8 @@ use super::state::{Pose, SolverChoices, State};
 use super::system::System;
 use super::system::structure::Structure;
 use crate::mechanism::{
-    BodyId, Coordinate, DriverId, FeatureRun, Indeterminate, Jet, Load, MarkerId, Mechanism, Order,
-    ParameterId, PrescribedMotion, ShapeId,
+    BodyId, Coordinate, DriverId, FeatureRun, Indeterminate, Jet, Load, MarkerId, Mechanism,
+    Number, Order, ParameterId, PrescribedMotion, ShapeId,
 };
 
 /// Solves position, velocity and acceleration of one mechanism.
@@ -422,15 +422,16 @@ impl Solver {
     }
 
     /// Returns least and largest value of the relation of a joint with play at the present pose \[m or
-    /// rad\], infinite where its parts only push.
+    /// rad\], for these parameters; infinite where its parts only push.
     #[must_use]
-    pub fn limits_of_play(&self, joint: usize) -> [f64; 2] {
+    pub fn limits_of_play<N: Number>(
+        &self,
+        joint: usize,
+        parameter: &impl Fn(ParameterId) -> N,
+    ) -> [N; 2] {
         let open = self.compiled.system.open_relation(joint);
-        let open = open.map(|open| {
-            let parameters = &self.state.pose.parameters;
-            open.limits(self.mechanism(), parameters, &self.state.at)
-        });
-        open.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
+        let open = open.map(|open| open.limits(self.mechanism(), parameter, &self.state.at));
+        open.unwrap_or([f64::NEG_INFINITY, f64::INFINITY].map(N::constant))
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.

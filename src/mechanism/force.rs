@@ -68,16 +68,21 @@ impl PassiveCause {
 
     /// Returns the part of the velocity with which something bounces, zero for friction.
     #[must_use]
-    pub fn restitution(&self, mechanism: &Mechanism, parameters: &[f64]) -> f64 {
-        match self {
-            Self::Stop(stop) => mechanism.stops[*stop].restitution(parameters),
+    pub fn restitution<N: Number>(
+        &self,
+        mechanism: &Mechanism,
+        parameter: &impl Fn(ParameterId) -> N,
+    ) -> N {
+        let restitution = match self {
+            Self::Stop(stop) => mechanism.stops[*stop].restitution(),
             Self::Play(joint) => {
                 let play = mechanism.joints[*joint].kind.play();
-                let restitution = play.and_then(|play| play.restitution.as_ref());
-                restitution.map_or(0.0, |restitution| restitution.value(parameters))
+                play.and_then(|play| play.restitution.as_ref())
             }
-            Self::Friction(_) => 0.0,
-        }
+            Self::Friction(_) => None,
+        };
+        let zero = N::constant(0.0);
+        restitution.map_or(zero, |restitution| restitution.evaluate(parameter, zero))
     }
 
     /// Returns the fault of parameters for which it is none, as the end of a sentence.
@@ -85,7 +90,8 @@ impl PassiveCause {
     pub fn fault(&self, mechanism: &Mechanism, parameters: &[f64]) -> Option<&'static str> {
         match self {
             Self::Stop(_) | Self::Play(_) => {
-                let is_possible = (0.0..=1.0).contains(&self.restitution(mechanism, parameters));
+                let is_possible = (0.0..=1.0)
+                    .contains(&self.restitution(mechanism, &|id| parameters[id.index()]));
                 (!is_possible).then_some("has a `restitution` that is not from 0 to 1")
             }
             Self::Friction(law) => {
@@ -340,8 +346,8 @@ impl ForceLaw {
 impl ElasticStop {
     /// Returns least and largest value at which it does not push \[m or rad\], infinite without a limit.
     #[must_use]
-    pub fn limits(&self, parameters: &[f64]) -> [f64; 2] {
-        limits(self.limits.each_ref(), parameters)
+    pub fn limits<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N) -> [N; 2] {
+        limits(self.limits.each_ref(), parameter)
     }
 
     /// Returns how far a value is beyond a limit, and 1 for the least or −1 for the largest one; `None`
@@ -596,10 +602,14 @@ impl Mechanism {
 }
 
 /// Returns least and largest value for these parameters, infinite without a limit.
-pub(super) fn limits(limits: [&Option<Expression>; 2], parameters: &[f64]) -> [f64; 2] {
-    let [least, most] = limits.map(|limit| limit.as_ref().map(|limit| limit.value(parameters)));
+pub(super) fn limits<N: Number>(
+    limits: [&Option<Expression>; 2],
+    parameter: &impl Fn(ParameterId) -> N,
+) -> [N; 2] {
+    let zero = N::constant(0.0);
+    let [least, most] = limits.map(|limit| Some(limit.as_ref()?.evaluate(parameter, zero)));
     [
-        least.unwrap_or(f64::NEG_INFINITY),
-        most.unwrap_or(f64::INFINITY),
+        least.unwrap_or(N::constant(f64::NEG_INFINITY)),
+        most.unwrap_or(N::constant(f64::INFINITY)),
     ]
 }

@@ -1,6 +1,9 @@
 //! Stops: where a coordinate may not go.
 
-use super::{Coordinate, ElasticStop, Expression, Force, ForceLaw, Load, PassiveCause, force};
+use super::{
+    Coordinate, ElasticStop, Expression, Force, ForceLaw, Load, Number, ParameterId, PassiveCause,
+    force,
+};
 
 /// Limits that a coordinate does not pass.
 #[derive(Clone, Debug)]
@@ -47,22 +50,20 @@ impl Stop {
         matches!(self.contact, StopContact::Rigid { .. })
     }
 
-    /// Returns the coefficient of restitution, zero for an elastic stop.
+    /// Returns the coefficient of restitution, `None` for zero and for an elastic stop.
     #[must_use]
-    pub fn restitution(&self, parameters: &[f64]) -> f64 {
+    pub fn restitution(&self) -> Option<&Expression> {
         match &self.contact {
-            StopContact::Rigid {
-                restitution: Some(restitution),
-            } => restitution.value(parameters),
-            _ => 0.0,
+            StopContact::Rigid { restitution } => restitution.as_ref(),
+            StopContact::Elastic { .. } => None,
         }
     }
 
     /// Returns least and largest value \[m or rad\] for these parameters, infinite without a limit.
     /// Allocates nothing.
     #[must_use]
-    pub fn limits(&self, parameters: &[f64]) -> [f64; 2] {
-        force::limits([&self.min, &self.max], parameters)
+    pub fn limits<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N) -> [N; 2] {
+        force::limits([&self.min, &self.max], parameter)
     }
 
     /// Returns the word for the coordinate in messages.

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use super::{Cause, Function, Mode, Passive};
 use crate::dynamics::event::EventKind;
 use crate::kinematics::Solver;
-use crate::mechanism::{Order, PassiveCause};
+use crate::mechanism::{Dual, Mechanism, Number, Order, ParameterId, PassiveCause};
 
 /// Height from which a fall ends at rest, in gaps that are rounding: below that of all bounces.
 const LOWEST_FALL: f64 = 1.0 / 64.0;
@@ -20,24 +20,36 @@ pub(super) struct Contact {
     pub(super) is_angle: bool,
 }
 
+impl Contact {
+    /// Returns least and largest value of the coordinate for these parameters, at the solver's pose.
+    fn limits_for<N: Number>(
+        &self,
+        solver: &Solver,
+        parameter: &impl Fn(ParameterId) -> N,
+    ) -> [N; 2] {
+        match self.cause {
+            PassiveCause::Stop(stop) => solver.mechanism().stops[stop].limits(parameter),
+            PassiveCause::Play(joint) => solver.limits_of_play(joint, parameter),
+            PassiveCause::Friction(_) => unreachable!("friction is no contact"),
+        }
+    }
+}
+
 impl Cause for Contact {
     fn read(&self, solver: &Solver, _: Mode, at: &mut Passive) {
         let parameters = &solver.pose().parameters;
-        match self.cause {
-            PassiveCause::Stop(stop) => {
-                at.bounds = solver.mechanism().stops[stop].limits(parameters);
-            }
-            PassiveCause::Play(joint) => {
-                at.bounds = solver.limits_of_play(joint);
-                let middle = 0.5 * (at.bounds[0] + at.bounds[1]);
-                if self.is_angle && middle.is_finite() {
-                    // The bodies' whole turns are no play in a gap.
-                    let turns = ((at.coordinate.value - middle) / TAU).round();
-                    at.coordinate.value -= TAU * turns;
-                }
-            }
-            PassiveCause::Friction(_) => {}
+        at.bounds = self.limits_for(solver, &|id| parameters[id.index()]);
+        let middle = 0.5 * (at.bounds[0] + at.bounds[1]);
+        let has_play = matches!(self.cause, PassiveCause::Play(_));
+        if has_play && self.is_angle && middle.is_finite() {
+            // The bodies' whole turns are no play in a gap.
+            let turns = ((at.coordinate.value - middle) / TAU).round();
+            at.coordinate.value -= TAU * turns;
         }
+    }
+
+    fn limits(&self, solver: &Solver, parameter: &dyn Fn(ParameterId) -> Dual) -> [Dual; 2] {
+        self.limits_for(solver, &parameter)
     }
 
     fn holds(&self, mode: Mode) -> bool {
@@ -60,9 +72,8 @@ impl Cause for Contact {
         true
     }
 
-    fn restitution(&self, solver: &Solver) -> f64 {
-        let parameters = &solver.pose().parameters;
-        self.cause.restitution(solver.mechanism(), parameters)
+    fn restitution(&self, mechanism: &Mechanism, parameter: &dyn Fn(ParameterId) -> Dual) -> Dual {
+        self.cause.restitution(mechanism, &parameter)
     }
 
     fn function(&self, mode: Mode, at: &Passive, side: usize) -> Option<Function> {

@@ -6,14 +6,18 @@
 use super::{Cause, Function, Mode, Passive};
 use crate::dynamics::event::EventKind;
 use crate::kinematics::Solver;
-use crate::mechanism::{ElasticStop, ParameterId};
+use crate::mechanism::{Dual, ElasticStop, ParameterId};
 
 impl Cause for ElasticStop {
     fn read(&self, solver: &Solver, mode: Mode, at: &mut Passive) {
         let parameters = &solver.pose().parameters;
-        at.bounds = self.limits(parameters);
+        at.bounds = self.limits(&|id| parameters[id.index()]);
         at.force = push(self, solver, mode, at);
         at.force_rounding = self.stiffness.value(parameters) * at.gap_rounding();
+    }
+
+    fn limits(&self, _: &Solver, parameter: &dyn Fn(ParameterId) -> Dual) -> [Dual; 2] {
+        Self::limits(self, &parameter)
     }
 
     fn beyond_law(&self, solver: &Solver, mode: Mode, at: &Passive) -> f64 {

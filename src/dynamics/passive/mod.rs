@@ -25,7 +25,9 @@ use super::function::{FUNCTIONS, Function};
 use super::triangular::{ascend, descend, factorise};
 use crate::kinematics::constraint::{Constraint, Incidence};
 use crate::kinematics::{EquationsOfMotion, ForceSensitivity, Friction, Sensitivity, Solver};
-use crate::mechanism::{Coordinate, DriverId, Dual, Jet, Load, Order, ParameterId, PassiveCause};
+use crate::mechanism::{
+    Coordinate, DriverId, Dual, Jet, Load, Mechanism, Order, ParameterId, PassiveCause,
+};
 use contact::Contact;
 pub(super) use contact::TOUCHED;
 use friction::Rubbing;
@@ -167,6 +169,12 @@ pub(super) trait Cause: Debug + Send + Sync {
     /// Reads the limits of its coordinate at the solver's pose, and the force if its law says it.
     fn read(&self, solver: &Solver, mode: Mode, at: &mut Passive);
 
+    /// Returns the limits of its coordinate at the solver's pose with their changes along a direction, along
+    /// which parameters change.
+    fn limits(&self, _: &Solver, _: &dyn Fn(ParameterId) -> Dual) -> [Dual; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY].map(Dual::constant)
+    }
+
     /// Returns how much more it exerts in a mode than its law says at this place: where a trial step goes
     /// beyond the end of the mode.
     fn beyond_law(&self, _: &Solver, _: Mode, _: &Passive) -> f64 {
@@ -199,9 +207,9 @@ pub(super) trait Cause: Debug + Send + Sync {
         None
     }
 
-    /// Returns the part of the velocity with which a contact bounces.
-    fn restitution(&self, _: &Solver) -> f64 {
-        0.0
+    /// Returns the part of the velocity with which a contact bounces, for these parameters.
+    fn restitution(&self, _: &Mechanism, _: &dyn Fn(ParameterId) -> Dual) -> Dual {
+        Dual::constant(0.0)
     }
 
     /// Returns a function of the motion that is positive while the mode lasts; `None` if that cannot end
@@ -506,6 +514,19 @@ impl PassiveForces {
             let limit = self.friction.limit(place);
             at[k].bounds = [-limit, limit];
         }
+    }
+
+    /// Returns the change of the bound of a friction along a direction.
+    pub(super) fn bound_change(
+        &self,
+        force: usize,
+        parameter: &impl Fn(ParameterId) -> Dual,
+        forces: &ForceSensitivity,
+    ) -> f64 {
+        let place = self.rubbing.iter().position(|(k, _)| *k == force);
+        place.map_or(0.0, |place| {
+            self.friction.limit_change(place, parameter, forces)
+        })
     }
 
     /// Adds the accelerations of the drivers to those of coordinates.

@@ -37,6 +37,9 @@ pub struct Direction {
     pub parameters: Vec<f64>,
     /// Change of the time, for prescribed motions.
     pub time: f64,
+    /// Changes of the sizes of forces that are inputs or follow from the motion, in the order of
+    /// [`Solution::loads`](crate::kinematics::Solution::loads); if it is empty, all stay.
+    pub loads: Vec<f64>,
 }
 
 impl Direction {
@@ -47,6 +50,7 @@ impl Direction {
             drivers: vec![Jet::constant(0.0); mechanism.drivers.len()],
             parameters: vec![0.0; mechanism.parameters.len()],
             time: 0.0,
+            loads: Vec::new(),
         }
     }
 
@@ -108,6 +112,12 @@ impl Sensitivity<'_> {
     /// Returns a parameter with its change.
     pub(crate) fn parameter_value(&self, parameter: ParameterId) -> Dual {
         self.parameters[parameter.index()].value
+    }
+
+    /// Returns all parameters with their changes.
+    pub(crate) fn parameter_values(&self) -> Vec<Dual> {
+        let all = self.parameters.iter();
+        all.map(|parameter| parameter.value).collect()
     }
 
     /// Returns a measure that is computed from others, with its change, for these forces with their

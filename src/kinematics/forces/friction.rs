@@ -175,6 +175,25 @@ impl Friction {
         own.law.sticking(&value) * pressure
     }
 
+    /// Returns the change of the [limit](Self::limit) at a place along a direction, from those of the
+    /// parameters and of the forces.
+    #[must_use]
+    pub fn limit_change(
+        &self,
+        place: usize,
+        parameter: &impl Fn(ParameterId) -> Dual,
+        forces: &ForceSensitivity,
+    ) -> f64 {
+        let Pair { law, .. } = &self.list[place];
+        let pressure = law.bearing.as_ref().map(|bearing| {
+            let (of_joint, by) = (self.reactions[place], forces.reaction(bearing.joint));
+            let reaction = [0, 1, 2].map(|k| Dual::new(of_joint[k], [by[k]]));
+            bearing.pressure(parameter, reaction)
+        });
+        let limit = law.sticking(parameter) * pressure.unwrap_or(Dual::constant(1.0));
+        limit.first()
+    }
+
     /// Solves all friction that slides. `respond` solves the reactions of [joints](Self::joints) for
     /// friction of these sizes, its last call for the solution. Allocates nothing unless it fails.
     ///

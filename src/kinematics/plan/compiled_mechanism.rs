@@ -83,7 +83,7 @@ impl StopRelation {
         parameters: &[f64],
     ) -> [f64; 2] {
         match self.owner {
-            LimitOwner::Stop(stop) => mechanism.stops[stop].limits(parameters),
+            LimitOwner::Stop(stop) => mechanism.stops[stop].limits(&|id| parameters[id.index()]),
             LimitOwner::Curve(_, last) => [0.0, last],
         }
     }

@@ -229,7 +229,7 @@ impl Solution {
     }
 
     /// Returns the changes of outputs along a direction \[SI\], not a number for forces that are
-    /// not sought. The loads stay.
+    /// not sought.
     ///
     /// # Errors
     ///
@@ -240,8 +240,9 @@ impl Solution {
         outputs: &[Output],
         direction: &Direction,
     ) -> Result<Vec<f64>, Error> {
-        let stay = vec![0.0; self.loads.len()];
-        let of_forces = self.force_changes(solver, direction, &stay)?;
+        let mut loads = direction.loads.clone();
+        loads.resize(self.loads.len(), 0.0);
+        let of_forces = self.force_changes(solver, direction, &loads)?;
         let mechanism = solver.mechanism().clone();
         let change = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
         let forces = self.forces().zip(of_forces.as_ref());

@@ -474,7 +474,7 @@ impl System {
     /// Checks that the limits of stops leave room between them.
     fn check_stops(&self, parameters: &[f64]) -> Result<(), Error> {
         for stop in &self.mechanism.stops {
-            let [min, max] = stop.limits(parameters);
+            let [min, max] = stop.limits(&|id| parameters[id.index()]);
             if min.is_nan() || max.is_nan() {
                 let what = format!("a limit of stop `{}`", stop.name);
                 return Err(Error::NotFinite { what });

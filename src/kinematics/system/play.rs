@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::kinematics::constraint::Constraint;
 use crate::kinematics::constraint::configuration::{Configuration, perp};
-use crate::mechanism::{CamFollower, Expression, Joint, Mechanism, ParameterId, Play};
+use crate::mechanism::{CamFollower, Expression, Joint, Mechanism, Number, ParameterId, Play};
 
 /// The relation between the two parts of a joint with play.
 #[derive(Debug)]
@@ -46,23 +46,24 @@ impl OpenRelation {
     }
 
     /// Returns least and largest value \[m or rad\], infinite where the parts only push.
-    pub(in crate::kinematics) fn limits(
+    pub(in crate::kinematics) fn limits<N: Number>(
         &self,
         mechanism: &Mechanism,
-        parameters: &[f64],
+        parameter: &impl Fn(ParameterId) -> N,
         at: &Configuration,
-    ) -> [f64; 2] {
-        let held = self.target.value(parameters);
+    ) -> [N; 2] {
+        let zero = N::constant(0.0);
+        let held = self.target.evaluate(parameter, zero);
         let joint = &mechanism.joints[self.joint];
         let play = joint.kind.play();
         if let Some(backlash) = play.and_then(|play| play.backlash.as_ref()) {
-            let half = 0.5 * backlash.value(parameters);
+            let half = backlash.evaluate(parameter, zero) * 0.5;
             return [held - half, held + half];
         }
         if opens_towards(joint, at) > 0.0 {
-            [held, f64::INFINITY]
+            [held, N::constant(f64::INFINITY)]
         } else {
-            [f64::NEG_INFINITY, held]
+            [N::constant(f64::NEG_INFINITY), held]
         }
     }
 }

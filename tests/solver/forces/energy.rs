@@ -57,8 +57,8 @@ fn power_becomes_energy() {
                 .iter()
                 .map(|jet| Jet::new(jet.first(), [jet.second(), 0.0]))
                 .collect(),
-            parameters: vec![0.0; mechanism.parameters.len()],
             time: 1.0,
+            ..Direction::zero(&mechanism)
         };
         let motion = biela::kinematics::KnownMotion {
             rates: &rates,
@@ -191,11 +191,7 @@ fn the_derivative_of_an_effort_by_an_acceleration_is_the_inertia() {
             if driver.motion().is_some() || driver.is_free() {
                 continue;
             }
-            let mut direction = Direction {
-                drivers: vec![Jet::constant(0.0); mechanism.drivers.len()],
-                parameters: vec![0.0; mechanism.parameters.len()],
-                time: 0.0,
-            };
+            let mut direction = Direction::zero(&mechanism);
             direction.drivers[index].derivatives[1] = 1.0;
             let Loaded {
                 solver,

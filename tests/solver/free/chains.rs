@@ -129,7 +129,7 @@ fn chains_keep_their_balances() {
                     .driver_id(stop.subject())
                     .expect("it is of a freedom");
                 let value = values[freedom.index()];
-                let [least, most] = stop.limits(&run.solver.pose().parameters);
+                let [least, most] = stop.limits(&|id| run.solver.pose().parameters[id.index()]);
                 assert!(
                     (least - 1e-12..=most + 1e-12).contains(&value),
                     "case {case}: {value} beyond {}\n{text}",
