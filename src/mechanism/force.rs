@@ -594,6 +594,12 @@ impl Mechanism {
         self.frictions().any(|law| law.bearing.is_some())
     }
 
+    /// Returns whether it has contacts of shapes.
+    #[must_use]
+    pub fn has_contacts(&self) -> bool {
+        (self.stops.iter()).any(|stop| stop.coordinate.shapes().is_some())
+    }
+
     /// Returns whether it has dynamics: a body with mass, or a force.
     #[must_use]
     pub fn has_dynamics(&self) -> bool {

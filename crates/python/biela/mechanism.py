@@ -573,6 +573,7 @@ class Mechanism:
         forces: bool = False,
         between: Bounds = (None, None),
         path: str | os.PathLike | None = None,
+        contacts: bool = False,
     ) -> Drawing:
         """Draws the mechanism at the start values, as SVG that notebooks show; `path` is a file for the
         drawing, whose extension decides: `.svg`, `.png`, or `.dxf` for the workshop.
@@ -580,7 +581,8 @@ class Mechanism:
         `poses` further poses stand as faint outlines along the motion that the traces cover, or
         along the range of `driver`, `between` two values of it. `dimensions` adds letters of joints and
         lengths of bodies, `instant_centres` the instant centre of each body and ground, `forces` arrows
-        for what joints and drivers exert, and for springs, dampers and loads.
+        for what joints and drivers exert, and for springs, dampers and loads, `contacts` the clearance
+        of each contact between its nearest places.
         """
         width = None if width is None else count_of("width", width, 1)
         poses = count_of("poses", poses)
@@ -588,11 +590,12 @@ class Mechanism:
         file = None if path is None else path_argument("path", path)
         if file is not None and file.lower().endswith(".dxf"):
             pictures = dict(poses=poses, dimensions=dimensions, instant_centres=instant_centres)
-            pictures.update(width=width, forces=forces, transparent=transparent)
+            pictures.update(width=width, forces=forces, contacts=contacts, transparent=transparent)
             for option, given in pictures.items():
                 if given:
                     raise UsageError(f"{option} is of pictures: leave it out for a drawing in DXF")
-        options = (bool(traces), poses, driver, bool(dimensions), bool(instant_centres), bool(forces))
+        marks = (bool(dimensions), bool(instant_centres), bool(forces), bool(contacts))
+        options = (bool(traces), poses, driver, *marks)
         drawing, content, notes = self._inner.draw(
             self._start(drive), given_values(parameters), options, bounds_of(between),
             (file, width, bool(transparent)),

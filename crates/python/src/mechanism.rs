@@ -47,8 +47,8 @@ type Motions = (Vec<f64>, Vec<(String, Drive)>);
 type TargetRow = (usize, Option<(String, bool)>, Vec<usize>, Vec<f64>, f64);
 
 /// Contents of a drawing: traces, number of poses, driver that moves, dimensions, instant centres,
-/// forces.
-type Contents = (bool, usize, Option<String>, bool, bool, bool);
+/// forces, contacts.
+type Contents = (bool, usize, Option<String>, bool, bool, bool, bool);
 
 /// A text, and what is worth knowing of it.
 type Told = (String, Vec<String>);
@@ -444,7 +444,7 @@ impl Mechanism {
         bounds: [Option<Value>; 2],
         picture: Picture,
     ) -> Result<DrawingRow, Failure> {
-        let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
+        let (traces, poses, driver, dimensions, instant_centres, forces, contacts) = contents;
         let (path, width, transparent) = picture;
         apart(py, || {
             let (scenario, parameters) = self.set(motions, parameters)?;
@@ -456,6 +456,10 @@ impl Mechanism {
             if forces && columns.is_empty() {
                 let message = "forces: the mechanism has no forces; \
                                give bodies a `mass` or add `[forces]`";
+                return Err(Failure::Usage(message.to_owned()));
+            }
+            if contacts && !self.model.has_contacts() {
+                let message = "contacts: the mechanism has no contacts; add `[contacts]`";
                 return Err(Failure::Usage(message.to_owned()));
             }
             let mut runner = Runner::new(&scenario, &columns)?;
@@ -482,6 +486,7 @@ impl Mechanism {
                 poses,
                 dimensions,
                 instant_centres,
+                contacts,
                 forces: places.into_iter().zip(values).collect(),
             };
             let sheet = diagram.sheet(&mut runner.motion.solver)?;

@@ -4,7 +4,7 @@ use super::force_place::{ForcePlace, force_arrows};
 use super::scene::Scene;
 use super::sheet::Sheet;
 use super::sweep::{follow, spread, sweep, usual_driver};
-use super::symbol::{Symbol, compose_dimensions, instant_centre};
+use super::symbol::{Symbol, compose_dimensions, contact_mark, instant_centre};
 use biela::kinematics::{Error, InstantCentre, Pose, Rates, Solver};
 use biela::mechanism::{BodyId, DisplayUnit, DriverId, Jet};
 
@@ -39,6 +39,8 @@ pub struct Diagram {
     /// Whether the instant centres of bodies and ground are drawn. They are those of the motion, or
     /// where it is at rest, those while the driver followed moves alone.
     pub instant_centres: bool,
+    /// Whether the clearance of each contact is shown between its nearest places.
+    pub contacts: bool,
     /// Forces that arrows show, each with its components in ground axes \[N\] and torque \[N m\].
     pub forces: Vec<(ForcePlace, [f64; 3])>,
 }
@@ -61,6 +63,7 @@ impl Default for Diagram {
             poses: 0,
             dimensions: false,
             instant_centres: false,
+            contacts: false,
             forces: Vec::new(),
         }
     }
@@ -91,6 +94,10 @@ impl Diagram {
             let unit = mechanism.length_display();
             let marks = instant_centre::compose(&scene.symbols, &scene.bodies, &centres, q, unit);
             scene.add(marks);
+        }
+        if self.contacts {
+            let marks = contact_mark::compose(&scene.symbols, solver);
+            scene.symbols.extend(marks);
         }
         if !self.forces.is_empty() {
             // Arrows of the forces' sizes take the place of their symbols.

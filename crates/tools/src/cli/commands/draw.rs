@@ -73,6 +73,10 @@ pub(in crate::cli) struct Draw {
     /// alone.
     #[arg(long)]
     instant_centres: bool,
+    /// Add the clearance of each contact: a dot where its shapes touch, otherwise a line between
+    /// their nearest places.
+    #[arg(long)]
+    contacts: bool,
     /// Width of the picture in pixels; lines and letters grow with it [default: 1600 for a PNG; 640
     /// for an SVG, more where many bodies need the room].
     #[arg(
@@ -106,6 +110,9 @@ impl Draw {
         if self.forces {
             input.check_dynamics()?;
         }
+        if self.contacts {
+            input.check_contacts()?;
+        }
         let usual = || PathBuf::from(format!("{}.svg", input.mechanism.name));
         let path = self.output.clone().unwrap_or_else(usual);
         InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&path)])?;
@@ -133,6 +140,7 @@ impl Draw {
             poses: self.poses as usize,
             dimensions: self.dimensions,
             instant_centres: self.instant_centres,
+            contacts: self.contacts,
             forces,
         };
         let sheet = diagram
@@ -148,6 +156,7 @@ impl Draw {
             ("--poses", self.poses > 0),
             ("--dimensions", self.dimensions),
             ("--instant-centres", self.instant_centres),
+            ("--contacts", self.contacts),
             ("--width", self.width.is_some()),
             ("--forces", self.forces),
             ("--transparent", self.transparent),

@@ -68,6 +68,16 @@ impl Input {
         ))
     }
 
+    /// Checks that there are contacts to show.
+    pub(in crate::cli) fn check_contacts(&self) -> Result<(), Error> {
+        if self.mechanism.has_contacts() {
+            return Ok(());
+        }
+        Err(Error::Usage(
+            "--contacts: the mechanism has no contacts; add `[contacts]`".to_owned(),
+        ))
+    }
+
     /// Returns an error of the kinematics with the name of the file.
     pub(in crate::cli) fn error(&self, error: kinematics::Error) -> Error {
         Error::Mechanism {

@@ -94,7 +94,7 @@ fn offset(
 }
 
 /// Returns a length with five digits in a unit.
-fn told(length: f64, unit: Option<DisplayUnit>) -> String {
+pub(super) fn told(length: f64, unit: Option<DisplayUnit>) -> String {
     shown(rounded(length * unit.map_or(1.0, |unit| unit.factor), 5))
 }
 

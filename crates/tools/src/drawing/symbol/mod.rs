@@ -158,5 +158,6 @@ symbols! { composer, ends:
     joint_letter: JointLetter;
     dimension: Dimension;
     instant_centre: InstantCentreMark;
+    contact_mark: ContactMark;
     trace: Trace;
 }

@@ -1,4 +1,4 @@
-//! Poses, dimensions and instant centres on demand.
+//! Poses, dimensions, instant centres and contacts on demand.
 
 use biela_tools::drawing::{Diagram, svg};
 
@@ -179,4 +179,54 @@ fn the_scale_has_the_unit_of_the_dimensions() {
         "{with}"
     );
     assert!(texts(false).contains(">200 mm<"));
+}
+
+/// A disc rests on a floor, a metre aside another one is 50 mm above it.
+#[test]
+fn contacts_are_dots_where_they_touch_and_lines_across_their_gaps() {
+    let text = "format = 1\nname = 'discs'\n\
+        [parameters]\ngap = { value = 0.05, unit = 'm', display = 'mm' }\n\
+        [ground.markers]\nO = [0, 0, '90*deg']\nP = [1, 0, '90*deg']\nL = [-1, 0]\nR = [2, 0]\n\
+        [ground.shapes]\nfloor = { wall = ['R', 'L'], depth = 0.1 }\n\
+        [bodies.low]\nmarkers = { C = [0, 0] }\nshapes.rim = { disc = 'C', radius = 0.2 }\n\
+        [bodies.high]\nmarkers = { C = [0, 0] }\nshapes.rim = { disc = 'C', radius = 0.2 }\n\
+        [joints]\na = { type = 'translational', markers = ['ground.O', 'low.C'] }\n\
+        b = { type = 'translational', markers = ['ground.P', 'high.C'] }\n\
+        [drivers]\nc = { coordinate = 'x', markers = ['ground.O', 'low.C'], start = 0.2 }\n\
+        d = { coordinate = 'x', markers = ['ground.P', 'high.C'], start = '0.2 + gap' }\n\
+        [contacts]\nrests = { shapes = ['low.rim', 'ground.floor'] }\n\
+        falls = { shapes = ['ground.floor', 'high.rim'] }\n";
+    let draw = |contacts: bool| {
+        let diagram = Diagram {
+            contacts,
+            ..Diagram::default()
+        };
+        let (mut solver, _) = assembled(&parse(text));
+        let sheet = diagram.sheet(&mut solver).expect("it can be drawn");
+        svg::write(&sheet, WIDTH, false)
+    };
+    let picture = draw(true);
+    let labels = check_picture("discs", &picture);
+    assert!(has(&labels, "rests 0 mm") && has(&labels, "falls 50 mm"));
+    let group = picture.split("<g class=\"points\"").nth(1);
+    let group = group.and_then(|rest| rest.split("</g>").next());
+    let marks: Vec<Vec<f64>> = (group.expect("there are contacts").split(" d=\"").skip(1))
+        .map(|mark| {
+            let data = mark.split('"').next().expect("it is closed");
+            let numbers = data.split(|c: char| c.is_ascii_alphabetic() || c == ' ');
+            let numbers = numbers.filter(|number| !number.is_empty());
+            numbers.map(|n| n.parse().expect("a number")).collect()
+        })
+        .collect();
+    let [dot, line] = marks.as_slice() else {
+        panic!("{picture}");
+    };
+    let [x, foot, other_x, top] = line[..] else {
+        panic!("{line:?}");
+    };
+    // Places are written in hundredths of a pixel; the dot begins at its right, 3 pixels from its centre.
+    let metre = x - (dot[0] - 3.0);
+    assert!((foot - dot[1]).abs() < 0.02 && (other_x - x).abs() < 0.02);
+    assert!((foot - top - 0.05 * metre).abs() < 0.02, "{dot:?} {line:?}");
+    assert!(!draw(false).contains("class=\"points\""));
 }

@@ -124,6 +124,11 @@ fn draw_adds_what_is_asked_for() {
     assert!(dimensions.contains(">lengths in ") && dimensions.contains("class=\"dimensions\""));
     let centres = stdout(&draw(&["--instant-centres", "--driver", "tilt"]).success());
     assert!(centres.contains("instant centres while tilt moves alone"));
+    let refused = stderr(&draw(&["--contacts"]).code(2));
+    assert_eq!(
+        refused,
+        "error: --contacts: the mechanism has no contacts; add `[contacts]`\n"
+    );
     let refused = stderr(&draw(&["--poses", "4", "--driver", "tild"]).code(2));
     assert_eq!(
         refused,
