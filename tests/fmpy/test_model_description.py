@@ -26,6 +26,7 @@ BODY_UNITS = {
     "vx": "m/s", "vy": "m/s", "omega": "rad/s",
     "ax": "m/s2", "ay": "m/s2", "alpha": "rad/s2",
 }  # fmt: skip
+WEIGHT_UNITS = {"mass": "kg", "center_x": "m", "center_y": "m", "inertia": "kg.m2"}
 POINT_UNITS = {name: unit for name, unit in BODY_UNITS.items() if unit.startswith("m")}
 COORDINATE_UNITS = {
     "m": {"position": "m", "velocity": "m/s", "acceleration": "m/s2"},
@@ -100,6 +101,13 @@ def expected_variables(file):
         yield name, "Real", "input", "continuous", table.get("unit")
     for name in file.get("contacts", {}):
         yield f"{name}.clearance", "Real", "output", "continuous", "m"
+        if file.get("freedoms"):
+            yield f"{name}.touching", "Integer", "local", "discrete", None
+    for name, body in file["bodies"].items():
+        # No size of a shape with a density is tunable in the mechanisms that the tests have.
+        if any("density" in body | shape for shape in body.get("shapes", {}).values()):
+            for suffix, unit in WEIGHT_UNITS.items():
+                yield f"{name}.{suffix}", "Real", "calculatedParameter", "fixed", unit
 
 
 def expected_indicators(file):
@@ -110,7 +118,8 @@ def expected_indicators(file):
     functions = file.get("functions", {})
     bent = [name for name, table in functions.items() if "table" in table and table.get("law") == "linear"]
     sizes = [str(table.get("value")) for table in file.get("forces", {}).values()]
-    return limits + 2 * sum(size.count(f"{name}(") for size in sizes for name in bent)
+    contacts = file.get("contacts", {}) if file.get("freedoms") else {}
+    return limits + 2 * len(contacts) + 2 * sum(size.count(f"{name}(") for size in sizes for name in bent)
 
 
 def expected_forces(file):
@@ -146,6 +155,8 @@ def expected_forces(file):
     for name, table in file.get("stops", {}).items() if file.get("freedoms") else ():
         (effort,) = force_units(table).values()
         yield f"{name}.effort", effort
+    for name in file.get("contacts", {}) if file.get("freedoms") else ():
+        yield f"{name}.effort", "N"
     for name, table in file.get("friction", {}).items():
         # Friction in a pin is a torque.
         of_pin = "joint" in table and file["joints"][table["joint"]]["type"] == "revolute"

@@ -144,7 +144,7 @@ impl<'a> DependencyTable<'a> {
                 | ForceQuantity::Held(_) => Order::Acceleration,
             }),
             Quantity::EventIndicator(_) => Some(Order::Acceleration),
-            Quantity::Clearance(_) => Some(Order::Position),
+            Quantity::Clearance(_) | Quantity::Weight(..) => Some(Order::Position),
             Quantity::Parameter(id) if self.mechanism.parameters[id.index()].derived => {
                 Some(Order::Position)
             }
@@ -363,6 +363,11 @@ impl<'a> DependencyTable<'a> {
                 self.add_origins(ForceQuantity::KineticEnergy, &mut origins);
             }
             Quantity::Parameter(parameter) => origins.add_parameter(mechanism, parameter),
+            Quantity::Weight(body, _) => {
+                for number in mechanism.numbers_of_mass(body) {
+                    origins.add_expression(mechanism, number);
+                }
+            }
             _ => {}
         }
         origins

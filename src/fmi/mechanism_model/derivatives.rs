@@ -6,7 +6,7 @@ use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
 use crate::kinematics::constraint::of_coordinate;
 use crate::kinematics::{Direction, OutputSource, Solution};
-use crate::mechanism::{DriverId, Order, Signal};
+use crate::mechanism::{DriverId, Jet, Order, ParameterId, Signal};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
@@ -86,8 +86,16 @@ impl MechanismModel {
             .sensitivity(rates, driver_rates, &direction);
         let sensitivity = sensitivity.map_err(without_value)?;
         let forces = self.motion.solution.forces().zip(of_forces.as_ref());
+        let parameter = |id: ParameterId| {
+            let value = self.course.parameters[id.index()];
+            Jet::linear(value, sensitivity.parameter(id))
+        };
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Parameter(parameter) => Some(sensitivity.parameter(parameter))
+                .filter(|change| change.is_finite())
+                .ok_or_else(|| sensitivity.fault()),
+            Quantity::Weight(body, place) => (self.mechanism.weight(body, &parameter))
+                .map(|weight| weight.numbers()[place].first())
                 .filter(|change| change.is_finite())
                 .ok_or_else(|| sensitivity.fault()),
             Quantity::Output(source) => source.change(&self.mechanism, &sensitivity, forces),

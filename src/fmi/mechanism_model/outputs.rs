@@ -73,6 +73,7 @@ pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
         Quantity::Input(..)
         | Quantity::ForceInput(_)
         | Quantity::Parameter(_)
+        | Quantity::Weight(..)
         | Quantity::Budget
         | Quantity::Time
         | Quantity::Iterations
@@ -266,6 +267,10 @@ impl MechanismModel {
                 Quantity::Input(driver, order) => self.course.inputs[driver.index()].get(order),
                 Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.course.parameters[parameter.index()],
+                Quantity::Weight(body, place) => {
+                    let weight = self.mechanism.weight_at(body, &self.course.parameters);
+                    weight.map_or(f64::NAN, |weight| weight.numbers()[place])
+                }
                 Quantity::Budget => self.course.budget,
                 Quantity::Time => self.course.time,
                 Quantity::Residual => solver.residual(),

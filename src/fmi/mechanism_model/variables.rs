@@ -9,7 +9,7 @@ use crate::dynamics::{self, KeptStart};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Budget, Dependencies, Output, OutputSource};
 use crate::mechanism::{
-    Driver, DriverId, DriverSource, LoadTarget, Mechanism, Order, ParameterId, Signal, Unit,
+    BodyId, Driver, DriverId, DriverSource, LoadTarget, Mechanism, Order, ParameterId, Signal, Unit,
 };
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
@@ -40,6 +40,9 @@ pub enum Quantity {
     Clearance(usize),
     /// Number of places at which a contact touches, by the index of its stop.
     Touching(usize),
+    /// A number of the mass that its shapes give a body, by its place among all
+    /// [numbers](Weight::numbers).
+    Weight(BodyId, usize),
     /// Largest scaled residual of the constraint equations.
     Residual,
     /// Scaled reciprocal condition of the Jacobian.
@@ -59,7 +62,8 @@ pub enum Quantity {
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
 /// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
 /// from others, forces, solver, time, states that are no outputs, event indicators; in the file's
-/// order within each group; the solver's budget, the inputs of the file, and the contacts at the end.
+/// order within each group; the solver's budget, the inputs of the file, the contacts, and the masses that
+/// shapes give at the end.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
     let kept = KeptStart::of(mechanism);
@@ -97,6 +101,7 @@ pub(super) fn variables_of(
     table.add_budget(mechanism);
     table.add_load_inputs(mechanism, |target| matches!(target, LoadTarget::Input(_)));
     table.add_contacts(mechanism);
+    table.add_weights(mechanism);
     table.list
 }
 
@@ -104,6 +109,16 @@ pub(super) fn variables_of(
 pub(super) fn has_local_states(variables: &[Variable<Quantity>]) -> bool {
     let mut variables = variables.iter();
     variables.any(|variable| variable.causality == Causality::LocalState)
+}
+
+/// Returns whether a value that depends on parameters may change between steps.
+fn variability_of(mechanism: &Mechanism, roots: &Dependencies) -> Variability {
+    let mut roots = roots.parameters.iter();
+    if roots.any(|root| mechanism.parameters[root.index()].tunable) {
+        Variability::Tunable
+    } else {
+        Variability::Fixed
+    }
 }
 
 #[derive(Default)]
@@ -194,17 +209,11 @@ impl Table {
             };
             let mut roots = Dependencies::default();
             roots.add_parameter(mechanism, id);
-            let mut roots = roots.parameters.iter();
-            let variability = if roots.any(|root| mechanism.parameters[root.index()].tunable) {
-                Variability::Tunable
-            } else {
-                Variability::Fixed
-            };
             self.add(
                 parameter.name.clone(),
                 parameter.description.clone(),
                 Quantity::Parameter(id),
-                (causality, variability),
+                (causality, variability_of(mechanism, &roots)),
                 Kind::Real {
                     unit: parameter.unit,
                     start: (!parameter.derived).then_some(parameter.default),
@@ -318,6 +327,45 @@ impl Table {
                     Quantity::Touching(index),
                     (Causality::Local, Variability::Discrete),
                     Kind::Integer,
+                );
+            }
+        }
+    }
+
+    /// Adds the masses, centres and inertias that follow from shapes.
+    fn add_weights(&mut self, mechanism: &Mechanism) {
+        let numbers = [
+            ("mass", Unit::KILOGRAM, "mass"),
+            (
+                "center_x",
+                Unit::METRE,
+                "x of the centre of mass, in the body's frame,",
+            ),
+            (
+                "center_y",
+                Unit::METRE,
+                "y of the centre of mass, in the body's frame,",
+            ),
+            (
+                "inertia",
+                Unit::KILOGRAM_METRE_SQUARED,
+                "moment of inertia about the centre of mass",
+            ),
+        ];
+        let bodies = mechanism.bodies.iter().enumerate();
+        for (index, body) in bodies.filter(|(_, body)| body.is_weighed) {
+            let mut roots = Dependencies::default();
+            for number in mechanism.numbers_of_mass(BodyId(index)) {
+                roots.add_expression(mechanism, number);
+            }
+            let variability = variability_of(mechanism, &roots);
+            for (place, (name, unit, what)) in numbers.into_iter().enumerate() {
+                self.add(
+                    format!("{}.{name}", body.name),
+                    format!("{what} of the shapes of `{}`", body.name),
+                    Quantity::Weight(BodyId(index), place),
+                    (Causality::CalculatedParameter, variability),
+                    Kind::real(Some(unit), None),
                 );
             }
         }

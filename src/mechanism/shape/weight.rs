@@ -26,6 +26,14 @@ pub struct Weight<N> {
     pub inertia: N,
 }
 
+impl<N> Weight<N> {
+    /// Returns the numbers in the order mass, x and y of the centre, inertia.
+    pub fn numbers(self) -> [N; 4] {
+        let [x, y] = self.center;
+        [self.mass, x, y, self.inertia]
+    }
+}
+
 impl<N: Number> Section<N> {
     pub(in crate::mechanism) fn nothing() -> Self {
         Self {

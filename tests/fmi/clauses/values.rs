@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{Error, Interface, Status, Version, describe};
+use biela::fmi::{Causality, Error, Interface, Status, Variability, Version, describe};
 
 use crate::clauses::{get, running, set, started, vr};
 use crate::common::mechanisms::crank;
@@ -123,6 +123,64 @@ fn derived_parameters_keep_to_their_limits() {
         refused.to_string().contains("is above `max` = 0.8"),
         "{refused}"
     );
+}
+
+/// A plate of w by h: its mass is m = 20 w h, its centre at half its sides, its inertia m (w² + h²)/12.
+#[test]
+fn masses_of_shapes_are_calculated_parameters() {
+    let mechanism = parse(
+        "format = 1\nname = 'plate'\n\
+         [parameters]\nw = { value = 0.3, unit = 'm', tunable = true }\n\
+         h = { value = 0.2, unit = 'm' }\n\
+         [ground.markers]\nO = [0, 0]\n\
+         [bodies.plate]\nthickness = 0.01\ndensity = 2000\n\
+         markers = { O = [0, 0], B = ['w', 0], C = ['w', 'h'], D = [0, 'h'] }\n\
+         shapes.all = { outline = ['O', 'B', 'C', 'D'] }\n\
+         [joints]\nO = { type = 'revolute', markers = ['ground.O', 'plate.O'] }\n\
+         [drivers]\nturn = { coordinate = 'angle', markers = ['ground.O', 'plate.O'], start = 0 }\n",
+    );
+    let names = ["mass", "center_x", "center_y", "inertia"].map(|name| format!("plate.{name}"));
+    let names = names.each_ref().map(String::as_str);
+    let of = |w: f64, h: f64| {
+        let mass = 20.0 * w * h;
+        [mass, w / 2.0, h / 2.0, mass * (w * w + h * h) / 12.0]
+    };
+    // The largest number is 1.6; each is a sum over four edges.
+    let assert_near = |found: &[f64], truth: [f64; 4]| {
+        let off = found
+            .iter()
+            .zip(truth)
+            .map(|(found, truth)| (found - truth).abs());
+        assert!(
+            off.fold(0.0, f64::max) < 20.0 * f64::EPSILON,
+            "{found:?} {truth:?}"
+        );
+    };
+    let mut instance = instance_of(mechanism, Interface::CoSimulation);
+    set(&mut instance, [("h", 0.1)]);
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    assert_near(&get(&mut instance, names), of(0.3, 0.1));
+    let references = names.map(|name| vr(&instance, name));
+    let w = vr(&instance, "w");
+    let found = instance.directional_derivative(&references, &[w], &[1.0]);
+    let inertia = 20.0 * 0.1 * (3.0 * 0.3 * 0.3 + 0.1 * 0.1) / 12.0;
+    assert_near(&found.expect("it exists"), [2.0, 0.5, 0.0, inertia]);
+    instance.exit_initialization_mode().expect("it starts");
+    set(&mut instance, [("w", 0.8)]);
+    instance.do_step(0.0, 0.1).expect("it stands");
+    assert_near(&get(&mut instance, names), of(0.8, 0.1));
+    let refused = instance.set_real(&references[..1], &[1.0]).unwrap_err();
+    assert!(
+        refused.to_string().contains("`plate.mass` cannot be set"),
+        "{refused}"
+    );
+    let kinds = instance.variables().iter();
+    let kinds = kinds.filter(|variable| variable.causality == Causality::CalculatedParameter);
+    let tunable: Vec<_> = kinds
+        .map(|kind| (kind.name.as_str(), kind.variability))
+        .collect();
+    assert_eq!(tunable, names.map(|name| (name, Variability::Tunable)));
 }
 
 /// The names of types and variables of a mechanism.

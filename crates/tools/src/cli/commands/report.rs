@@ -95,7 +95,7 @@ pub(in crate::cli) fn page(
     let variables = variables(&mechanism);
     let rows = variables
         .iter()
-        .filter_map(|variable| parameter(variable, &values));
+        .filter_map(|variable| parameter(&mechanism, variable, &values));
     let parameters = table(&["Parameter", "Value", "Unit", "Limits", "Meaning"], rows);
     let page = fill(
         PAGE,

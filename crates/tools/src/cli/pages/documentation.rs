@@ -329,7 +329,7 @@ fn page(
             ("moving", &escape(&shown.moving)),
             ("player", &(player(&shown.animation) + live_page)),
             ("drivers", &drivers(mechanism, &shown.ranges)),
-            ("parameters", &parameters(&variables, values)),
+            ("parameters", &parameters(mechanism, &variables, values)),
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),
             ("standard", &version.to_string()),
@@ -413,11 +413,11 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
 }
 
 /// Returns the table of parameters in SI units, then the folded table of settings.
-fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
+fn parameters(mechanism: &Mechanism, variables: &[Variable<Quantity>], values: &[f64]) -> String {
     let header = ["Parameter", "Value", "Unit", "Limits", "Meaning"];
     let rows = variables
         .iter()
-        .filter_map(|variable| parameter(variable, values));
+        .filter_map(|variable| parameter(mechanism, variable, values));
     let mut html = table(&header, rows);
     let settings = variables.iter().filter_map(setting);
     let settings: Vec<[String; 3]> = settings.collect();
@@ -457,13 +457,17 @@ fn setting(variable: &Variable<Quantity>) -> Option<[String; 3]> {
 
 /// Returns name, value, unit, limits and meaning of a variable that is a parameter.
 pub(in crate::cli) fn parameter(
+    mechanism: &Mechanism,
     variable: &Variable<Quantity>,
     values: &[f64],
 ) -> Option<[String; 5]> {
-    let (Kind::Real { unit, min, max, .. }, Quantity::Parameter(parameter)) =
-        (&variable.kind, &variable.quantity)
-    else {
+    let Kind::Real { unit, min, max, .. } = &variable.kind else {
         return None;
+    };
+    let value = match variable.quantity {
+        Quantity::Parameter(parameter) => values[parameter.index()],
+        Quantity::Weight(body, place) => mechanism.weight_at(body, values)?.numbers()[place],
+        _ => return None,
     };
     let shown = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v}"));
     let limits = match (*min, *max) {
@@ -475,7 +479,7 @@ pub(in crate::cli) fn parameter(
     Some([
         variable.name.clone(),
         // A derived value carries the rounding of its expression.
-        shown(Some(rounded(values[parameter.index()], 12))),
+        shown(Some(rounded(value, 12))),
         name_of(*unit),
         limits,
         meaning(variable),
