@@ -13,6 +13,7 @@ from browsing import browser as browser_program  # noqa: E402  (its folder has o
 from drawing import Drawing  # noqa: E402
 from harness import ROOT  # noqa: E402
 from playwright.sync_api import sync_playwright  # noqa: E402
+from serving import Server, free_port  # noqa: E402
 
 # What keeps Chromium from looking up hosts, which some machines refuse.
 FLAGS = [
@@ -51,3 +52,31 @@ def sheet(chromium, folder, tmp_path):
     yield drawing
     context.close()
     assert drawing.errors == []
+
+
+@pytest.fixture
+def tab(sheet, tmp_path):
+    """Opens another tab of the same browser."""
+
+    def open_tab(address=None):
+        page = sheet.page.context.new_page()
+        drawing = Drawing(page, sheet.index, tmp_path, address)
+        drawing.errors = sheet.errors
+        return drawing
+
+    return open_tab
+
+
+@pytest.fixture
+def served(sheet, tmp_path):
+    """A studio that keeps a file in step: its sheet, its server and the file."""
+    file = tmp_path / "rod.toml"
+    server = Server(file, "--port", str(free_port()))
+    sheet.page.goto(server.address)
+    sheet.page.wait_for_selector(".studio.ready")
+    yield sheet, server, file
+    server.stop()
+    # The browser tells of requests that fail, until its pages are closed.
+    for page in sheet.page.context.pages:
+        page.close()
+    sheet.errors[:] = [error for error in sheet.errors if "Failed to load resource" not in error]

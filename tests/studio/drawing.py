@@ -1,7 +1,12 @@
 """The hand of a person at the studio: clicks on the sheet, keys, windows."""
 
+import base64
+import json
 import tomllib
+import zlib
 from pathlib import Path
+
+STUDIO = "document.querySelector('.studio').studio"
 
 # Tools by the keys that choose them.
 KEYS = {
@@ -31,6 +36,13 @@ KEYS = {
     "hole": "H",
     "contact": "C",
 }
+
+
+def link_to(text):
+    """The part of an address that holds a mechanism."""
+    pack = zlib.compressobj(wbits=-15)
+    packed = pack.compress(json.dumps(["friend.toml", text, []]).encode()) + pack.flush()
+    return "#m=" + base64.urlsafe_b64encode(packed).decode().rstrip("=")
 
 
 class Drawing:
@@ -93,9 +105,23 @@ class Drawing:
         for key in keys:
             self.page.keyboard.press(key)
 
+    def reload(self):
+        self.page.reload()
+        self.page.wait_for_selector(".studio.ready")
+
+    def menu(self, name):
+        """Chooses from the menu *File*."""
+        self.page.locator(".file-menu").click()
+        self.page.get_by_role("menuitem", name=name).click()
+
+    @property
+    def drafts(self) -> list[str]:
+        """Texts of the drafts that the browser keeps."""
+        return self.page.evaluate(f"() => {STUDIO}.drafts.all().map((draft) => draft.text)")
+
     @property
     def text(self) -> str:
-        return self.page.evaluate("() => document.querySelector('.studio').studio.text")
+        return self.page.evaluate(f"() => {STUDIO}.text")
 
     @property
     def file(self) -> dict:
@@ -125,8 +151,7 @@ class Drawing:
         return path
 
     def list_templates(self):
-        self.page.locator(".file-menu").click()
-        self.page.get_by_text("Templates …").click()
+        self.menu("Templates …")
 
     def open_template(self, name):
         self.list_templates()

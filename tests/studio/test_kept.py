@@ -1,58 +1,17 @@
 """Nothing that is drawn is lost: drafts of the browser, and the file on the disk."""
 
-import base64
-import json
-import os
 import socket
-import subprocess
 import time
-import zlib
 
 import pytest
-from drawing import Drawing
-from harness import ROOT, program
-
-STUDIO = "document.querySelector('.studio').studio"
+from drawing import STUDIO, link_to
+from serving import Server, until
 
 
 def rod(sheet, at=(0.2, 0.1)):
     sheet.tool("link")
     sheet.click((0, 0), ground=True)
     sheet.click(at)
-
-
-def reload(sheet):
-    sheet.page.reload()
-    sheet.page.wait_for_selector(".studio.ready")
-
-
-def drafts(sheet):
-    return sheet.page.evaluate(f"() => {STUDIO}.drafts.all().map((draft) => draft.text)")
-
-
-def link_to(text):
-    """The part of an address that holds a mechanism."""
-    pack = zlib.compressobj(wbits=-15)
-    packed = pack.compress(json.dumps(["friend.toml", text, []]).encode()) + pack.flush()
-    return "#m=" + base64.urlsafe_b64encode(packed).decode().rstrip("=")
-
-
-def menu(sheet, name):
-    sheet.page.locator(".file-menu").click()
-    sheet.page.get_by_role("menuitem", name=name).click()
-
-
-@pytest.fixture
-def tab(sheet, tmp_path):
-    """Opens another tab of the same browser."""
-
-    def open_tab(address=None):
-        page = sheet.page.context.new_page()
-        drawing = Drawing(page, sheet.index, tmp_path, address)
-        drawing.errors = sheet.errors
-        return drawing
-
-    return open_tab
 
 
 @pytest.mark.smoke
@@ -63,12 +22,12 @@ def test_a_reload_at_once_keeps_the_last_gesture_and_its_undo(sheet):
     sheet.tool("pivot")
     sheet.click((0.2, 0.1))
     last = sheet.text
-    reload(sheet)
+    sheet.reload()
     assert sheet.text == last
     for text in (first, empty):
         sheet.page.keyboard.press("Control+z")
         assert sheet.text == text
-    reload(sheet)
+    sheet.reload()
     assert sheet.text == empty
     for text in (first, last):
         sheet.page.keyboard.press("Control+y")
@@ -80,7 +39,7 @@ def test_typed_text_counts_as_soon_as_it_is_typed(sheet):
     sheet.page.locator(".editor .cm-content").click()
     sheet.page.keyboard.press("Control+End")
     sheet.page.keyboard.type("# last word\noops")
-    reload(sheet)
+    sheet.reload()
     assert sheet.text.endswith("# last word\noops")
     sheet.page.keyboard.press("Control+z")
     assert "oops" not in sheet.text
@@ -88,7 +47,7 @@ def test_typed_text_counts_as_soon_as_it_is_typed(sheet):
     sheet.tool("select")
     sheet.click((0.1, 0.05))
     sheet.page.locator(".inspector .field", has_text="B x").locator("input").fill("300")
-    reload(sheet)
+    sheet.reload()
     assert sheet.file["bodies"]["link"]["markers"]["B"][0] == 0.3
 
 
@@ -101,27 +60,27 @@ def test_links_tabs_new_sheets_and_templates_overwrite_no_draft(sheet, tab):
     other.tool("pivot")
     other.click((0.2, 0.1))
     friends = other.text
-    reload(other)
+    other.reload()
     assert other.text == friends
     assert sheet.text == mine
-    assert sorted(drafts(sheet)) == sorted([mine, friends])
+    assert sorted(sheet.drafts) == sorted([mine, friends])
     # A new sheet and a template ask nothing and lose nothing.
-    menu(other, "New")
+    other.menu("New")
     assert "friend" not in other.text
     other.open_template("four_bar")
     template = other.text
-    reload(other)
+    other.reload()
     assert other.text == template
-    assert sorted(drafts(sheet)) == sorted([mine, friends])
+    assert sorted(sheet.drafts) == sorted([mine, friends])
     # Two tabs with one draft: the one that is changed later goes on by itself.
     third = tab()
     assert third.text == friends
     sheet.tool("pivot")
     sheet.click((0.2, 0.1))
-    reload(sheet)
+    sheet.reload()
     assert sheet.text != mine
     # A draft comes back from the list, with its undo.
-    menu(third, "Drafts")
+    third.menu("Drafts")
     third.page.locator(".draft button", has_text="mechanism").first.click()
     third.page.wait_for_selector("dialog", state="detached")
     third.frame()
@@ -132,9 +91,9 @@ def test_links_tabs_new_sheets_and_templates_overwrite_no_draft(sheet, tab):
     sheet.tool("link")
     sheet.click((0.05, 0.08), (0.1, 0.1))
     assert "another tab" in sheet.said.lower()
-    reload(third)
+    third.reload()
     assert third.text == mine
-    reload(sheet)
+    sheet.reload()
     assert len(sheet.file["bodies"]) == 2
 
 
@@ -162,56 +121,12 @@ def test_a_store_that_takes_nothing_is_told_until_it_is_saved(sheet):
     sheet.page.close(run_before_unload=True)
     sheet.page.wait_for_function("() => true")
     assert asked == ["beforeunload"]
-    menu(sheet, "New")
+    sheet.menu("New")
     sheet.page.locator("dialog button.primary").click()
     assert sheet.file["bodies"]
     with sheet.page.expect_download():
         sheet.page.keyboard.press("Control+s")
     assert not told.is_visible()
-
-
-class Server:
-    """`biela studio` with a file."""
-
-    def __init__(self, *arguments):
-        solver = os.environ.get("BIELA_PAGE_SOLVER")
-        self.command = [program(), "studio", *arguments, *(["--solver", solver] if solver else [])]
-        self.start()
-
-    def start(self):
-        self.process = subprocess.Popen(self.command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.address = self.process.stdout.readline().strip()
-
-    def stop(self):
-        self.process.kill()
-        return self.process.communicate()[1]
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def until(true, seconds=10):
-    end = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < end
-        time.sleep(0.05)
-
-
-@pytest.fixture
-def served(sheet, tmp_path):
-    """A studio that keeps a file in step: its sheet, its server and the file."""
-    file = tmp_path / "rod.toml"
-    server = Server(file, "--port", str(free_port()))
-    sheet.page.goto(server.address)
-    sheet.page.wait_for_selector(".studio.ready")
-    yield sheet, server, file
-    server.stop()
-    # The browser tells of requests that fail, until its page is closed.
-    sheet.page.close()
-    sheet.errors[:] = [error for error in sheet.errors if "Failed to load resource" not in error]
 
 
 @pytest.mark.smoke
@@ -257,7 +172,7 @@ def test_a_file_that_another_program_changes_is_not_written_over(served):
     assert file.read_text() == changed
     sheet.page.locator(".unsaved .from-disk").click()
     sheet.page.wait_for_function(f"() => {STUDIO}.text.includes('pole')")
-    assert mine in drafts(sheet)
+    assert mine in sheet.drafts
     file.write_text(changed.replace("pole", "mast"))
     sheet.tool("pivot")
     sheet.click((0.2, 0.1))
@@ -266,12 +181,101 @@ def test_a_file_that_another_program_changes_is_not_written_over(served):
     assert "pole" in sheet.text
     # Another drawing leaves the file alone.
     before = file.read_text()
-    menu(sheet, "New")
+    sheet.menu("New")
     rod(sheet, (0.1, 0.3))
     time.sleep(0.2)
     assert file.read_text() == before
-    menu(sheet, "Back to rod.toml")
+    sheet.menu("Back to rod.toml")
     assert sheet.text == before
+
+
+def test_tabs_that_begin_with_one_unchanged_file_keep_both_drawings(served, tab):
+    sheet, server, file = served
+    other = tab(server.address)
+    rod(sheet)
+    mine = sheet.text
+    until(lambda: file.exists() and file.read_text() == mine)
+    # Neither an undo of nothing nor a drawing takes away what another tab has drawn.
+    other.page.bring_to_front()
+    other.page.keyboard.press("Control+z")
+    assert "another tab" in other.said.lower()
+    assert sheet.drafts == [mine]
+    rod(other, (0.1, 0.3))
+    assert sorted(sheet.drafts) == sorted([mine, other.text])
+    assert file.read_text() == mine
+
+
+def test_what_waits_for_the_server_is_written_behind_another_drawing(served):
+    sheet, server, file = served
+    rod(sheet)
+    until(lambda: file.exists() and file.read_text() == sheet.text)
+    server.stop()
+    sheet.tool("pivot")
+    sheet.click((0.2, 0.1))
+    mine = sheet.text
+    told = sheet.page.locator(".unsaved")
+    told.wait_for()
+    # It is kept: nothing is asked, and the line stays.
+    sheet.menu("New")
+    rod(sheet, (0.1, 0.3))
+    other = sheet.text
+    assert "rod.toml" in told.inner_text()
+    server.start()
+    until(lambda: file.read_text() == mine)
+    told.wait_for(state="hidden")
+    # The same with a page that is opened again.
+    sheet.menu("Back to rod.toml")
+    server.stop()
+    sheet.page.keyboard.press("Control+z")
+    mine = sheet.text
+    told.wait_for()
+    sheet.menu("Drafts")
+    sheet.page.locator(".draft button", has_text="mechanism").first.click()
+    sheet.page.wait_for_function(f"(text) => {STUDIO}.text === text", arg=other)
+    sheet.page.goto("about:blank")
+    server.start()
+    sheet.page.goto(server.address)
+    sheet.page.wait_for_selector(".studio.ready")
+    assert sheet.text == other
+    until(lambda: file.read_text() == mine)
+
+
+def test_a_file_that_was_changed_behind_another_drawing_is_not_written_over(served):
+    sheet, _, file = served
+    rod(sheet)
+    mine = sheet.text
+    until(lambda: file.exists() and file.read_text() == mine)
+    sheet.menu("New")
+    rod(sheet, (0.1, 0.3))
+    other = sheet.text
+    changed = mine.replace("rod", "pole")
+    file.write_text(changed)
+    sheet.reload()
+    assert sheet.text == other
+    sheet.menu("Back to rod.toml")
+    assert sheet.text == file.read_text() == changed
+    assert sorted(sheet.drafts) == sorted([mine, other])
+    # What was drawn before has its undo.
+    sheet.menu("Drafts")
+    sheet.page.locator(".draft button", has_text="rod").first.click()
+    sheet.page.wait_for_function(f"(text) => {STUDIO}.text === text", arg=mine)
+    sheet.page.keyboard.press("Control+z")
+    assert "link" not in sheet.text
+
+
+def test_a_text_with_an_error_has_its_own_drawing_after_a_reload(sheet):
+    rod(sheet)
+    sheet.page.locator(".editor .cm-content").click()
+    sheet.press("Control+End")
+    sheet.page.keyboard.type("oops")
+    sheet.reload()
+    assert sheet.state == "broken"
+    drawing = sheet.page.locator(".studio.stale .drawing svg")
+    assert drawing.count() == 1
+    # A file with an error has none, and not that of the file before.
+    sheet.page.evaluate(f"() => {STUDIO}.open({{ name: 'a.toml', text: 'format = 1\\noops' }})")
+    assert sheet.state == "broken"
+    assert drawing.count() == 0
 
 
 def test_the_studio_is_at_one_port_and_says_where_else():

@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from drawing import STUDIO
 
 # Tools that a random hand takes, with the number of clicks that it makes.
 TOOLS = {
@@ -25,9 +26,7 @@ TOGETHER = 20
 
 
 def points(sheet):
-    return sheet.page.evaluate(
-        "() => document.querySelector('.studio').studio.view.sketch.points.map((point) => point.at)"
-    )
+    return sheet.page.evaluate(f"() => {STUDIO}.view.sketch?.points.map((point) => point.at) ?? []")
 
 
 def somewhere(sheet, hand):
@@ -66,7 +65,7 @@ def test_undo_and_redo_of_random_drawings(sheet, first_seed):
     empty = sheet.text
     for seed in range(first_seed, first_seed + TOGETHER):
         sheet.page.evaluate(
-            "(text) => document.querySelector('.studio').studio.open({ name: 'mechanism.toml', text })", empty
+            f"(text) => {STUDIO}.open({{ name: 'mechanism.toml', text }})", empty
         )
         draw_at_random(sheet, seed)
 

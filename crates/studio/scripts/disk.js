@@ -29,7 +29,13 @@ export class Disk {
 
   /** Whether the file has not all that is drawn. */
   get waits() {
-    return this.wanted !== this.written;
+    return this.wanted !== null && this.wanted !== this.written;
+  }
+
+  /** Writes no more: another page goes on with the drawing of this file. */
+  leave() {
+    this.wanted = null;
+    [this.trouble, this.changed] = ["", false];
   }
 
   /** Writes a text, now or when the server answers again. */
@@ -60,19 +66,20 @@ export class Disk {
         [this.written, this.version, this.trouble] = [body, said, ""];
         return true;
       }
-      // Another server has started in its place, with another token.
-      if (answer.status === 403 && !renewed) {
+      // Another server may have started in its place, with another token; what was written may have come
+      // there without an answer, or from another page.
+      if (answer.status === 403 || answer.status === 409) {
         const now = await this.ask();
-        if (now.file.text === this.written) {
+        if (!renewed && [body, this.written].includes(now.file.text)) {
           this.take(now);
           return await this.put(body, true);
         }
         this.changed = true;
       }
-      this.changed ||= answer.status === 409;
       this.trouble = this.changed ? "another program has changed it on the disk" : said;
-    } catch {
-      this.trouble = "`biela studio` does not answer. What you draw waits in this browser until it runs again";
+    } catch (error) {
+      const isGone = error instanceof TypeError;
+      this.trouble = isGone ? "`biela studio` does not answer. What you draw waits in this browser until it runs again" : error.message;
     }
     return false;
   }

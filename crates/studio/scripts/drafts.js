@@ -31,11 +31,11 @@ export class Drafts {
   }
 
   /**
-   * Returns a draft, null if there is none.
+   * Returns a draft, null if there is none. One that another tab has changed is no longer that of this tab.
    * @returns {Draft | null}
    */
   get(id) {
-    return parsed(attempt(() => sessionStorage.getItem(DRAFT + id) ?? localStorage.getItem(DRAFT + id)));
+    return parsed(attempt(() => localStorage.getItem(DRAFT + id) ?? sessionStorage.getItem(DRAFT + id)));
   }
 
   /**
@@ -65,6 +65,18 @@ export class Drafts {
       this.keepPicture(id, this.picture(draft.id));
     }
     return id;
+  }
+
+  /** Keeps a draft of the file on the disk under another name, where that file begins anew. */
+  setAside(id) {
+    const draft = this.get(id);
+    const picture = this.picture(id);
+    this.remove(id);
+    if (draft?.changed) {
+      const other = newId();
+      localStorage.setItem(DRAFT + other, JSON.stringify({ ...draft, id: other, disk: undefined }));
+      this.keepPicture(other, picture);
+    }
   }
 
   remove(id) {

@@ -168,6 +168,9 @@ class Studio {
     this.words = undefined;
     this.savedText = this.draft.changed ? null : file.text;
     this.claims = true;
+    // A text with an error leaves its own drawing, not that of another file.
+    this.view = {};
+    this.sheet.show(null);
     this.show(answer, { anew: true });
     this.background.restore(this.drafts.picture(this.draft.id)).catch(() => {});
     if (fit) {
@@ -204,11 +207,12 @@ class Studio {
   /** Asks before a drawing is given up that is kept nowhere; true if it may go. */
   async mayLeave() {
     this.takeFields();
-    if (!this.unsaved) {
+    const { unkept } = this;
+    if (!unkept) {
       return true;
     }
     const answer = await openWindow(this.root, "Give up this drawing?", (form) => {
-      say(add(form, "p"), `\`${this.name}\` was changed, and ${this.unsaved}. What is not saved as a file is lost.`);
+      say(add(form, "p"), `\`${this.name}\` was changed, and ${unkept}. What is not saved as a file is lost.`);
       buttonRow(form, ["Keep it", ""], ["Give it up", "leave"]);
     });
     return answer === "leave";
@@ -407,7 +411,9 @@ class Studio {
   /** Keeps the drawing in this browser, and in the file that `biela studio` serves. */
   keep() {
     this.keepDraft();
-    this.ownDisk?.write(this.fileText);
+    if (this.draft.changed) {
+      this.ownDisk?.write(this.fileText);
+    }
   }
 
   keepDraft() {
@@ -417,11 +423,12 @@ class Studio {
     try {
       const { id } = draft;
       const { history, words } = this;
-      const disk = this.ownDisk?.written;
-      draft.id = this.drafts.keep({ ...draft, ...file, text, history, words, disk }, this.server, this.claims);
+      const disk = this.ownDisk;
+      draft.id = this.drafts.keep({ ...draft, ...file, text, history, words, disk: disk?.written }, this.server, this.claims);
       this.claims = false;
       this.storeTrouble = "";
       if (draft.id !== id) {
+        disk?.leave();
         this.say(`Another tab has \`${this.name}\`, too: this one is a draft of its own now`);
       }
     } catch (error) {
@@ -441,14 +448,17 @@ class Studio {
     }
   }
 
-  /** The reason why what is shown is not safe, "" if it is. */
-  get unsaved() {
+  /** The reason why what is shown is kept nowhere, "" if it is. */
+  get unkept() {
     const disk = this.ownDisk;
-    if (disk?.waits && disk.trouble) {
-      return `\`${this.file.name}\` was not written: ${disk.trouble}`;
-    }
     const isSaved = this.savedText === this.fileText || (disk && !disk.waits);
     return this.storeTrouble && !isSaved ? this.storeTrouble : "";
+  }
+
+  /** The reason why something is not safe, "" if all is: what is shown, or the file on the disk. */
+  get unsaved() {
+    const { disk } = this;
+    return disk?.waits && disk.trouble ? `\`${disk.name}\` was not written: ${disk.trouble}` : this.unkept;
   }
 
   /** Says what is not safe as long as it is not. */
@@ -466,14 +476,16 @@ class Studio {
   /** Goes on from the file on the disk, or writes over it. */
   async settle(writes) {
     const disk = this.ownDisk;
+    if (!writes && !(await this.mayLeave())) {
+      return;
+    }
     try {
       const file = await disk.renew();
       if (writes) {
         await disk.write(this.fileText);
       } else {
-        // The drawing goes on as a draft of its own.
-        const { history } = this;
-        this.drafts.keep({ ...this.file, id: newId(), changed: true, text: this.fileText, history }, this.server);
+        disk.leave();
+        this.drafts.setAside(disk.id);
         this.open({ ...file, id: disk.id });
       }
     } catch (error) {
@@ -488,6 +500,18 @@ class Studio {
     if (await this.mayLeave()) {
       this.open(this.drafts.get(id) ?? { name, text: written, id });
     }
+  }
+
+  /** Returns the file on the disk with what was drawn in it, unless another program has changed it since. */
+  fileOfDisk(file) {
+    const { drafts, disk } = this;
+    const kept = drafts.get(disk.id);
+    if (kept && kept.text !== file.text && kept.disk !== file.text) {
+      drafts.setAside(disk.id);
+      this.say(`\`${file.name}\` was changed on the disk: what was drawn before is under Drafts`);
+      return { ...file, id: disk.id };
+    }
+    return { ...file, ...kept, id: disk.id };
   }
 
   /** Takes what is being typed in a field. */
@@ -816,7 +840,7 @@ class Studio {
     document.addEventListener("visibilitychange", () => document.hidden && this.takeFields());
     addEventListener("beforeunload", (event) => {
       this.takeFields();
-      if (this.unsaved || this.ownDisk?.waits) {
+      if (this.unsaved || this.disk?.waits) {
         event.preventDefault();
       }
     });
@@ -1104,33 +1128,22 @@ async function begin() {
 /** Returns what a page begins with: what its tab has shown last, else the file on the disk, a link or the latest draft. */
 async function firstFile(studio, given) {
   const { drafts } = studio;
-  studio.server = given.token ?? "";
+  studio.server = given.place ?? "";
   const { id, server } = drafts.shown;
-  if (given.token) {
-    studio.disk = new Disk(given, () => studio.keepDraft());
-  }
   const linked = await studio.fileOfAddress();
-  if (linked) {
-    return linked;
+  const shown = id && (server === studio.server || !given.place) ? drafts.get(id) : null;
+  if (!given.place) {
+    return linked ?? shown ?? drafts.all()[0] ?? { name: "mechanism.toml", text: EMPTY };
   }
-  const shown = id && (server === studio.server || !given.token) ? drafts.get(id) : null;
-  if (shown && shown.id !== studio.disk?.id) {
-    return shown;
+  const disk = new Disk(given, () => studio.keepDraft());
+  studio.disk = disk;
+  const file = studio.fileOfDisk(given.file);
+  const other = linked ?? (shown?.id === disk.id ? null : shown);
+  if (other && file.text !== disk.written) {
+    // What was drawn in the file before is written all the same.
+    disk.write(file.text);
   }
-  if (studio.disk) {
-    const kept = drafts.get(studio.disk.id);
-    const { text } = given.file;
-    if (!kept || kept.text === text || kept.disk === text) {
-      return { ...given.file, ...kept, id: studio.disk.id };
-    }
-    if (kept.text !== kept.disk) {
-      // Changes that the file never got stay beside those of another program.
-      drafts.keep({ ...kept, id: newId(), disk: undefined, changed: true }, studio.server);
-      studio.say(`\`${given.file.name}\` was changed on the disk: what was drawn before is under Drafts`);
-    }
-    return { ...given.file, id: studio.disk.id };
-  }
-  return drafts.all()[0] ?? { name: "mechanism.toml", text: EMPTY };
+  return other ?? file;
 }
 
 begin().catch((error) => {

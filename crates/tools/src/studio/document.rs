@@ -193,7 +193,8 @@ impl Document {
         }
     }
 
-    /// Takes over the history of this text; of one whose changes do not fit, the part that does.
+    /// Takes over the history of this text; of one whose changes do not fit, the part that does. A text
+    /// with an error has the last drawing before it.
     pub(super) fn restore(&mut self, history: &History) {
         let texts = |changes: &[Change]| {
             let mut texts = vec![self.text.clone()];
@@ -211,6 +212,10 @@ impl Document {
             texts
         };
         (self.before, self.undone) = (texts(&history.before), texts(&history.undone));
+        if self.drawn.is_none() {
+            let mut before = self.before.iter().rev();
+            self.drawn = before.find_map(|text| Drawn::read(&self.source(text)).0);
+        }
     }
 
     /// Describes the document: its text, its problems, what is drawn at a scale.

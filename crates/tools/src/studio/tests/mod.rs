@@ -199,6 +199,25 @@ fn another_studio_goes_on_with_the_history_of_a_text() {
 }
 
 #[test]
+fn a_text_with_an_error_keeps_its_last_drawing_in_another_studio() {
+    let mut host = studio(EMPTY);
+    let points = json!([{ "at": [0, 0] }, { "at": [0.04, 0.03] }]);
+    act_warned(&mut host, &json!({ "kind": "link", "points": points }));
+    let mut view = Value::Null;
+    for word in ["[oops", "[oops!"] {
+        let text = format!("{}{word}", host.text());
+        view = ask(&mut host, &json!({ "do": "type", "text": text }));
+    }
+    let history = ask(&mut host, &json!({ "do": "history" }))["history"].clone();
+    let begin =
+        json!({ "do": "begin", "name": "a.toml", "text": view["text"], "history": history });
+    let other = ask(&mut Host::default(), &begin);
+    assert_eq!(other["is_stale"], true);
+    assert_eq!(other["sketch"]["bodies"].as_array().map(Vec::len), Some(1));
+    assert_eq!(other, view);
+}
+
+#[test]
 fn a_slider_crank_is_drawn_from_its_points() {
     let mut host = studio(EMPTY);
     act(
