@@ -198,3 +198,82 @@ def test_a_length_is_typed_while_drawing(sheet, long):
     sheet.page.mouse.move(*sheet.place((0.2, 0)))
     sheet.press(*(key if key != " " else "Space" for key in long), "Enter")
     assert math.isclose(length(sheet.file, "link"), 0.12)
+
+
+class Clicks:
+    """Counts clicks on a page and keys pressed in it, Ctrl aside."""
+
+    def __init__(self, page):
+        self.page = page
+        page.evaluate(
+            """() => {
+              window.counted = [0, 0];
+              ["pointerdown", "keydown"].forEach((kind, place) => {
+                addEventListener(kind, (event) => (window.counted[place] += event.isTrusted && event.key !== "Control"), true);
+              });
+            }"""
+        )
+
+    @property
+    def clicks_and_keys(self):
+        return self.page.evaluate("() => window.counted")
+
+
+def test_clicks_from_an_empty_sheet_to_the_fmu_of_a_four_bar_with_its_coupler_curve(sheet):
+    counted = Clicks(sheet.page)
+    sheet.press("l")
+    sheet.click((0, 0), ground=True)
+    sheet.click((0.05, 0.1))
+    sheet.press("p")
+    sheet.click((0.05, 0.1), (0.3, 0.25), (0.1, 0.3))
+    sheet.press("Enter", "l")
+    sheet.click((0.3, 0.25))
+    sheet.click((0.4, 0), ground=True)
+    sheet.press("d")
+    sheet.click((0, 0))
+    sheet.press("t")
+    sheet.click((0.1, 0.3))
+    fmu = sheet.export()
+    assert counted.clicks_and_keys == [11, 6]
+    file = sheet.file
+    start = degrees(file["drivers"]["link_angle"]["start"])
+    crank = length(file, "link")
+    out = final(fmu, link_angle=(start, start + 1))
+    pin = (crank * math.cos(start + 1), crank * math.sin(start + 1))
+    (name,) = [name.removesuffix(".x") for name in out if name.startswith("plate.") and name.count(".") == 2 and name.endswith(".x")]
+    point = file["bodies"]["plate"]["markers"][name.split(".")[1]]
+    assert abs(math.dist((out[f"{name}.x"], out[f"{name}.y"]), pin) - math.hypot(*point)) < EXACT
+
+
+def test_clicks_from_an_empty_sheet_to_the_fmu_of_an_excavator_with_three_cylinders(sheet):
+    counted = Clicks(sheet.page)
+    sheet.press("l")
+    sheet.click((0, 0), ground=True)
+    sheet.click((0.3, 0.2), (0.3, 0.2), (0.5, 0.05), (0.5, 0.05), (0.45, -0.05))
+    sheet.press("c")
+    # From ground to the boom, from there to the stick, from there to the bucket.
+    sheet.click((0.15, -0.05), (0.15, 0.1), (0.225, 0.15), (0.4, 0.125), (0.36, 0.155), (0.45, -0.05))
+    fmu = sheet.export()
+    assert counted.clicks_and_keys == [14, 2]
+    file = sheet.file
+    drivers = file["drivers"]
+    ends = {name: (driver["start"], driver["start"] + 0.01) for name, driver in drivers.items()}
+    out = final(fmu, **ends)
+
+    def place(path):
+        """The global place of a marker."""
+        body, name = path.split(".")
+        if body == "ground":
+            return file["ground"]["markers"][name]
+        x, y = file["bodies"][body]["markers"][name]
+        phi = out[f"{body}.phi"]
+        return (
+            out[f"{body}.x"] + x * math.cos(phi) - y * math.sin(phi),
+            out[f"{body}.y"] + x * math.sin(phi) + y * math.cos(phi),
+        )
+
+    assert len(ends) == 3
+    for name, (_, end) in ends.items():
+        assert abs(math.dist(*map(place, drivers[name]["markers"])) - end) < EXACT
+    for joint in file["joints"].values():
+        assert math.dist(*map(place, joint["markers"])) < EXACT
