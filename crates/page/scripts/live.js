@@ -285,7 +285,7 @@ export class Live {
     });
     this.loads = page.loads.map((load, index) =>
       row(load, -load.largest, load.largest, load.value, (value, done) => {
-        const request = { do: "load", input: index, value };
+        const request = /** @type {const} */ ({ do: "load", input: index, value });
         load.moves ? this.slide(request, done) : this.give(request);
       }),
     );
