@@ -104,6 +104,55 @@ def test_keys_after_windows_names_and_text(sheet):
     assert sheet.page.locator("dialog").count() == 0
 
 
+def test_a_box_selects_points_that_are_moved_copied_and_deleted_together(sheet):
+    sheet.tool("link")
+    sheet.click((0, 0), ground=True)
+    sheet.click((0.05, 0.1), (0.05, 0.1), (0.2, 0), (0.3, 0), (0.35, 0.1))
+    drawn, before = sheet.text, sheet.file
+    sheet.tool("select")
+
+    def choose(start, end):
+        sheet.page.keyboard.down("Shift")
+        sheet.drag(start, end)
+        sheet.page.keyboard.up("Shift")
+
+    rings = sheet.page.locator(".marks circle.selected")
+    title = sheet.page.locator(".inspector h2")
+    choose((-0.03, -0.03), (0.24, 0.14))
+    assert sheet.text == drawn
+    assert rings.count() == 3
+    assert title.inner_text() == "Bodies link, link_2"
+    # Bodies that move as a whole keep their lengths.
+    sheet.drag((0.05, 0.1), (0.1, 0.2))
+    bodies = sheet.file["bodies"]
+    for name, body in before["bodies"].items():
+        assert bodies[name]["markers"] == body["markers"]
+        way = [a - b for a, b in zip(bodies[name]["estimate"][:2], body["estimate"][:2], strict=True)]
+        assert way == pytest.approx([0.05, 0.1] if name != "link_3" else [0, 0], abs=1e-12)
+    assert list(sheet.file["ground"]["markers"].values()) == [[0.05, 0.1]]
+    sheet.press("Control+d")
+    assert len(sheet.file["bodies"]) == 5
+    sheet.press("Control+z", "Control+z")
+    assert sheet.text == drawn
+    choose((0.24, 0.14), (-0.03, -0.03))
+    sheet.press("Delete")
+    assert list(sheet.file["bodies"]) == ["link_3"]
+    assert "joints" not in sheet.file
+    sheet.press("Control+z")
+    # Ends of bodies that are not wholly in the box are moved alone; Delete takes the pins there.
+    choose((0.17, -0.03), (0.33, 0.03))
+    assert rings.count() == 2
+    sheet.drag((0.3, 0), (0.3, -0.05))
+    assert sheet.file["bodies"]["link"] == before["bodies"]["link"]
+    at = [point["at"] for point in sheet.page.evaluate(f"() => {STUDIO}.view.sketch.points")]
+    for place in ([0.2, -0.05], [0.3, -0.05]):
+        assert any(place == pytest.approx(each, abs=1e-12) for each in at)
+    choose((-0.03, -0.03), (0.12, 0.14))
+    sheet.page.locator(".sheet").focus()
+    sheet.press("Delete")
+    assert "link" not in sheet.file["bodies"]
+
+
 @pytest.mark.smoke
 def test_a_key_right_after_a_window_or_a_menu_is_for_the_sheet(sheet):
     """The key comes before the browser draws again, as on a machine that is busy."""

@@ -66,6 +66,7 @@ export class Design {
     this.typed.hidden = true;
     this.forget();
     this.drag = null;
+    this.box = null;
     this.mark();
   }
 
@@ -190,8 +191,13 @@ export class Design {
       press.moves = true;
       clearTimeout(this.waiting);
       if (this.tool === "select" && !press.pans) {
-        this.begin(press.found);
+        this.begin(press.found, event);
       }
+    }
+    if (this.box) {
+      this.box[1] = now;
+      this.mark();
+      return;
     }
     if (press?.moves && (press.pans || (this.tool === "select" && !this.drag))) {
       this.sheet.pan([now[0] - before[0], now[1] - before[1]]);
@@ -257,7 +263,9 @@ export class Design {
     if (!press || event.button === 2) {
       return;
     }
-    if (this.drag) {
+    if (this.box) {
+      this.chooseBox();
+    } else if (this.drag) {
       this.end();
     } else if (!press.moves || this.tool !== "select") {
       if (press.pans) {
@@ -416,10 +424,27 @@ export class Design {
     return found.thing ?? null;
   }
 
+  /** Selects the points in the box. */
+  chooseBox() {
+    const [from, to] = this.box;
+    this.box = null;
+    const isIn = (place) => [0, 1].every((k) => Math.min(from[k], to[k]) <= place[k] && place[k] <= Math.max(from[k], to[k]));
+    const points = this.sketch.points.filter(({ at }) => isIn(this.sheet.toScreen(at)));
+    const [markers, joints] = ["markers", "joints"].map((list) => points.flatMap((point) => point[list]));
+    this.studio.select(points.length > 1 ? { kind: "points", markers, joints } : points.length ? this.thing({ point: points[0] }) : null);
+  }
+
   // -- dragging ------------------------------------------------------------------------------
 
-  begin(found) {
-    if (found.point) {
+  begin(found, { shiftKey }) {
+    const { selection } = this.studio;
+    const isChosen = selection?.kind === "points" && [found.body, ...(found.point?.markers ?? [])].some((name) => this.studio.selected().includes(name) || selection.markers.includes(name));
+    if (isChosen) {
+      const { markers } = selection;
+      this.drag = { markers, from: found.at, without: markers, body: found.body };
+    } else if (shiftKey && !found.point && !found.body && !found.thing) {
+      this.box = [this.press.at, this.press.at];
+    } else if (found.point) {
       const { markers } = found.point;
       this.drag = { markers: [ownMarker(found.point)], from: found.at, without: markers, point: found.point };
     } else if (found.body) {
@@ -540,6 +565,10 @@ export class Design {
       }
     }
     this.markSelection();
+    if (this.box) {
+      const [[x, y], [u, v]] = this.box;
+      sheet.mark("path", { d: `M${fix(x)} ${fix(y)}H${fix(u)}V${fix(v)}H${fix(x)}Z`, class: "box" });
+    }
     const tool = TOOLS[this.tool];
     const { over } = this;
     if (over && !this.drag && (this.tool !== "select" || over.point || over.body)) {
@@ -589,10 +618,9 @@ export class Design {
   markSelection() {
     const { selection } = this.studio;
     const { sheet, sketch } = this;
-    if (selection?.kind === "point") {
-      const point = sketch.points.find((each) => each.markers.includes(selection.markers[0]));
-      if (point) {
-        sheet.ring(point.at, "selected", 13);
+    for (const { at, markers } of selection?.markers ? sketch.points : []) {
+      if (markers.some((marker) => selection.markers.includes(marker))) {
+        sheet.ring(at, "selected", 13);
       }
     }
     if (selection?.kind === "thing") {
@@ -709,7 +737,7 @@ export class Design {
       this.long.value = key;
       return true;
     }
-    if (key === "F2" && this.studio.selected().length) {
+    if (key === "F2" && this.studio.selected().length && this.studio.selection.kind !== "points") {
       this.studio.act({ kind: "rename", old: this.studio.selected()[0] });
       return true;
     }
@@ -752,7 +780,7 @@ export class Design {
   nudge(by) {
     const { selection } = this.studio;
     const body = selection.kind === "body" && this.sketch.bodies.find((each) => each.name === selection.name);
-    const markers = body ? body.markers : selection.markers?.slice(0, 1);
+    const markers = body ? body.markers : selection.kind === "points" ? selection.markers : selection.markers?.slice(0, 1);
     if (markers) {
       this.drag = { markers, from: [0, 0], to: { at: by, guides: [] } };
       this.end();

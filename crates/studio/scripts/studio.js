@@ -596,12 +596,18 @@ class Studio {
       selection &&
       ((selection.kind === "thing" && !things.some((thing) => thing.name === selection.name)) ||
         (selection.kind === "body" && !sketch?.bodies.some((body) => body.name === selection.name)) ||
-        (selection.kind === "point" &&
+        (selection.markers &&
           !sketch?.points.some((point) => point.markers.some((marker) => selection.markers.includes(marker)))));
     if (gone) {
       this.selection = null;
     }
     this.markText();
+  }
+
+  /** The names of the bodies all of whose points are selected. */
+  chosenBodies() {
+    const { markers } = this.selection;
+    return (this.view.sketch?.bodies ?? []).filter((body) => body.markers.every((marker) => markers.includes(marker))).map(({ name }) => name);
   }
 
   /** Marks in the text where the selection stands. */
@@ -620,6 +626,9 @@ class Studio {
   /** The names of what is selected. */
   selected() {
     const { selection } = this;
+    if (selection?.kind === "points") {
+      return this.chosenBodies();
+    }
     return selection ? (selection.name ? [selection.name] : [...selection.markers]) : [];
   }
 
@@ -628,8 +637,9 @@ class Studio {
     if (!selection) {
       return;
     }
-    const joints = selection.kind === "point" ? selection.joints : [];
-    const names = joints.length ? joints : this.selected();
+    const bodies = selection.kind === "points" ? this.chosenBodies() : [];
+    const joints = bodies.length ? [] : selection.joints ?? [];
+    const names = [bodies, joints].find((list) => list.length) ?? selection.markers ?? [selection.name];
     this.gesture({ kind: "delete", names });
   }
 
@@ -1064,7 +1074,7 @@ class Studio {
       const keys = add(form, "dl", { className: "keys-list" });
       const told = [
         ...Object.values(TOOLS).flatMap((tool) => (tool.label ? [[keyName(tool), tool.label]] : [])),
-        ["Shift", "without grid and directions"],
+        ["Shift", "without grid and directions; dragging the bare sheet selects in a box"],
         ["digits", "the length of what is drawn"],
         ["arrows, Enter", "move on the sheet and click, with Ctrl on ground"],
         ["PageUp, PageDown", "go to the point before, to the next one"],

@@ -117,22 +117,35 @@ impl<'a> Actions<'a> {
             let why = self.why(&named);
             self.add("Name its length", &asks, why);
         }
-        let way = self.editing.rounded(BESIDE * self.editing.drawn.size());
-        let duplicate = json!({ "kind": "duplicate", "bodies": [name], "by": [way, -way] });
-        self.offer("Duplicate", &duplicate);
-        if let Some(first) = markers.first() {
-            let [x, y, _] = self.editing.drawn.place(*first);
-            let angle = std::f64::consts::FRAC_PI_2;
-            let mirror =
-                json!({ "kind": "mirror", "bodies": [name], "at": [x, y], "angle": angle });
-            self.offer("Mirror", &mirror);
-        }
+        self.copies(&[name])?;
         self.rename(name);
         for shape in self.editing.text.keys(&["bodies", name, "shapes"]) {
             let delete = json!({ "kind": "delete", "names": [format!("{name}.{shape}")] });
             self.add(&format!("Delete shape {shape}"), &delete, None);
         }
-        self.delete(name);
+        self.delete(&[name]);
+        Ok(())
+    }
+
+    /// Offers what can be done with several bodies.
+    pub(super) fn bodies(&mut self, names: &[&str]) -> Result<(), Refusal> {
+        self.copies(names)?;
+        self.delete(names);
+        Ok(())
+    }
+
+    /// Offers copies of bodies: beside them, and mirrored at the first point of the first one.
+    fn copies(&mut self, names: &[&str]) -> Result<(), Refusal> {
+        let way = self.editing.rounded(BESIDE * self.editing.drawn.size());
+        let duplicate = json!({ "kind": "duplicate", "bodies": names, "by": [way, -way] });
+        self.offer("Duplicate", &duplicate);
+        let first = names.first().map(|name| self.editing.body(name));
+        if let Some(first) = first.transpose()?.and_then(|body| body.markers.first()) {
+            let [x, y, _] = self.editing.drawn.place(*first);
+            let angle = std::f64::consts::FRAC_PI_2;
+            let mirror = json!({ "kind": "mirror", "bodies": names, "at": [x, y], "angle": angle });
+            self.offer("Mirror", &mirror);
+        }
         Ok(())
     }
 
@@ -154,7 +167,7 @@ impl<'a> Actions<'a> {
             _ => {}
         }
         self.rename(name);
-        self.delete(name);
+        self.delete(&[name]);
     }
 
     /// Offers to drive a joint and to let it move freely.
@@ -179,12 +192,9 @@ impl<'a> Actions<'a> {
         self.add("Rename", &json!({ "kind": "rename", "old": name }), None);
     }
 
-    fn delete(&mut self, name: &str) {
-        self.add(
-            "Delete",
-            &json!({ "kind": "delete", "names": [name] }),
-            None,
-        );
+    fn delete(&mut self, names: &[&str]) {
+        let delete = json!({ "kind": "delete", "names": names });
+        self.add("Delete", &delete, None);
     }
 
     /// Offers a gesture, with the reason if it cannot be done.

@@ -21,8 +21,8 @@ use rows::Rows;
 /// Decimals of lengths.
 const DECIMALS: usize = 4;
 
-/// Describes a thing by its name, a point by the paths of its markers, or the mechanism if there is no
-/// name: `title`, `kind`, `rows` and `actions`.
+/// Describes a thing by its name, bodies by theirs, a point by the paths of its markers, or the mechanism
+/// if there is no name: `title`, `kind`, `rows` and `actions`.
 ///
 /// A row has a `label`, the `path` of its value, with the `element` of a list there, the `value` as it
 /// stands in the file, empty if it is left out, `shown` in mm or degrees, `unit`, `type` (`number`,
@@ -50,6 +50,7 @@ pub(super) fn inspect(document: &Document, names: &[&str]) -> Result<Value, Refu
             rows.joints_at(markers)?;
             actions.point(markers)?;
         }
+        ("body", names @ [_, _, ..]) => actions.bodies(names)?,
         ("body", [name, ..]) => {
             rows.body(name)?;
             actions.body(name)?;
@@ -88,6 +89,7 @@ fn title(editing: &Editing, names: &[&str]) -> Result<(String, &'static str), Re
     }
     let (noun, kind) = match section_of(editing, name) {
         Some("parameters") => ("Parameter", "parameter"),
+        Some("bodies") if names.len() > 1 => ("Bodies", "body"),
         Some("bodies") => ("Body", "body"),
         Some("joints") => ("Joint", "joint"),
         Some("constraints") => ("Constraint", "constraint"),
@@ -102,5 +104,6 @@ fn title(editing: &Editing, names: &[&str]) -> Result<(String, &'static str), Re
         Some("friction") => ("Friction", "friction"),
         _ => return Err(format!("there is nothing called `{name}`").into()),
     };
+    let name = names.join(", ");
     Ok((format!("{noun} {name}"), kind))
 }

@@ -44,9 +44,10 @@ fn written(form: &Value) -> String {
 #[test]
 fn forms_have_the_numbers_of_the_file_and_what_can_be_done() {
     let mut host = shipped_studio("excavator_arm.toml");
-    let things: [&[&str]; 8] = [
+    let things: [&[&str]; 9] = [
         &[],
         &["bucket"],
+        &["bucket", "lever"],
         &["stick.lever", "lever.pin"],
         &["rod"],
         &["boom_cylinder"],
