@@ -68,6 +68,10 @@ struct Nearest {
     length: f64,
 }
 
+/// Part of places by which two distances may differ that are the same: some roundings. Where a place passes
+/// from an edge to its end, the two differ by less within 1e-8 of their size.
+const SAME: f64 = 16.0 * f64::EPSILON;
+
 /// Motion of a core on its body over a sub-step while parameters move, bounded.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoreMotion {
@@ -209,9 +213,18 @@ fn nearest(
             if apart >= least && !is_bore {
                 continue;
             }
-            if let Some((form, factor, of_radii, value)) = Branch::of(&a, &b)
-                && value < least
-            {
+            let Some((form, factor, of_radii, value)) = Branch::of(&a, &b) else {
+                continue;
+            };
+            // An edge is nearer than its ends, also where rounding says otherwise.
+            let places = a.center.into_iter().chain(b.center);
+            let rounding = SAME * places.fold(value.abs(), |size, x| size.max(x.abs()));
+            let slack = match (form, best.as_ref().map(|(best, _)| best.form)) {
+                (Form::Edge(..), Some(Form::Span)) => rounding,
+                (Form::Span, Some(Form::Edge(..))) => -rounding,
+                _ => 0.0,
+            };
+            if value < least + slack {
                 let branch = Branch {
                     features: [i, j],
                     form,

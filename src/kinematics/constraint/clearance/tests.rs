@@ -301,3 +301,33 @@ fn a_pin_in_a_bore_and_a_corner_have_the_clearances_of_closed_forms() {
         }
     }
 }
+
+/// A place beside an edge, so near its end that both are as near to rounding.
+#[test]
+fn an_edge_is_nearer_than_its_ends_whatever_rounding_says() {
+    let mut next = numbers();
+    for k in 0..2000 {
+        let (sin, cos) = (3.2 * next()).sin_cos();
+        let offset = [next(), next()];
+        let turned =
+            |[x, y]: [f64; 2]| [offset[0] + cos * x - sin * y, offset[1] + sin * x + cos * y];
+        let feature = |kind, center, ends: [[f64; 2]; 2]| Feature {
+            kind,
+            center: turned(center),
+            ends: ends.map(turned),
+            radius: 0.0,
+            position: 0,
+        };
+        // Within 1e-12 of the edge's end, places are rounding.
+        let before = 10_f64.powf(-10.5 + 1.5 * next());
+        let place = [0.3 - before, 0.005];
+        let place = feature(FeatureKind::Place, place, [place; 2]);
+        let end = [0.3, 0.0];
+        let edge = feature(FeatureKind::Edge, [0.15, 0.0], [[0.0; 2], end]);
+        let end = feature(FeatureKind::Place, end, [end; 2]);
+        let both = if k % 2 == 0 { [edge, end] } else { [end, edge] };
+        let of = |side: usize, k: usize| Some(if side == 0 { place } else { both[k] });
+        let (branch, _) = nearest([1, 2], of).expect("they have a distance");
+        assert!(matches!(branch.form, Form::Edge(..)), "{before}");
+    }
+}
