@@ -41,7 +41,7 @@ pub enum Quantity {
     /// Number of places at which a contact touches, by the index of its stop.
     Touching(usize),
     /// A number of the mass that its shapes give a body, by its place among all
-    /// [numbers](Weight::numbers).
+    /// [numbers](crate::mechanism::Weight::numbers).
     Weight(BodyId, usize),
     /// Largest scaled residual of the constraint equations.
     Residual,
