@@ -58,11 +58,21 @@ impl Pair {
         reaction: [N; 3],
         rate: N,
     ) -> N {
-        let pressure = match &self.law.bearing {
-            Some(bearing) => bearing.pressure(parameter, reaction),
-            None => N::constant(1.0),
-        };
+        let pressure = self.pressure(parameter, reaction);
         self.law.along(parameter, pressure, rate, self.sign)
+    }
+
+    /// Returns the largest force while it sticks, for a reaction of the joint, if it is in one.
+    fn limit<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, reaction: [N; 3]) -> N {
+        self.law.sticking(parameter) * self.pressure(parameter, reaction)
+    }
+
+    /// Returns the factor of its coefficients, for a reaction of the joint, if it is in one.
+    fn pressure<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, reaction: [N; 3]) -> N {
+        let bearing = self.law.bearing.as_ref();
+        bearing.map_or(N::constant(1.0), |bearing| {
+            bearing.pressure(parameter, reaction)
+        })
     }
 
     /// Returns whether it slides in a joint.
@@ -167,12 +177,8 @@ impl Friction {
     /// solution \[N or N m\].
     #[must_use]
     pub fn limit(&self, place: usize) -> f64 {
-        let own = &self.list[place];
         let value = |id: ParameterId| self.parameters[id.index()];
-        let pressure = own.law.bearing.as_ref().map_or(1.0, |bearing| {
-            bearing.pressure(&value, self.reactions[place])
-        });
-        own.law.sticking(&value) * pressure
+        self.list[place].limit(&value, self.reactions[place])
     }
 
     /// Returns the change of the [limit](Self::limit) at a place along a direction, from those of the
@@ -184,14 +190,11 @@ impl Friction {
         parameter: &impl Fn(ParameterId) -> Dual,
         forces: &ForceSensitivity,
     ) -> f64 {
-        let Pair { law, .. } = &self.list[place];
-        let pressure = law.bearing.as_ref().map(|bearing| {
-            let (of_joint, by) = (self.reactions[place], forces.reaction(bearing.joint));
-            let reaction = [0, 1, 2].map(|k| Dual::new(of_joint[k], [by[k]]));
-            bearing.pressure(parameter, reaction)
-        });
-        let limit = law.sticking(parameter) * pressure.unwrap_or(Dual::constant(1.0));
-        limit.first()
+        let own = &self.list[place];
+        let bearing = own.law.bearing.as_ref();
+        let by = bearing.map_or([0.0; 3], |bearing| forces.reaction(bearing.joint));
+        let reaction = [0, 1, 2].map(|k| Dual::new(self.reactions[place][k], [by[k]]));
+        own.limit(parameter, reaction).first()
     }
 
     /// Solves all friction that slides. `respond` solves the reactions of [joints](Self::joints) for
