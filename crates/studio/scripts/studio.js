@@ -1150,7 +1150,7 @@ async function firstFile(studio, given) {
   const file = studio.fileOfDisk(given.file);
   const other = linked ?? (shown?.id === disk.id ? null : shown);
   if (other && file.text !== disk.written) {
-    // What was drawn in the file before is written all the same.
+    // Changes of the file that nobody has written are written behind another drawing, too.
     disk.write(file.text);
   }
   return other ?? file;
