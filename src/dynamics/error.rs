@@ -34,7 +34,7 @@ pub enum Error {
     /// Nothing moves by forces.
     #[error("the mechanism has no freedom: all that moves is driven")]
     NoFreedom,
-    /// Derivatives along a motion end at its first event.
+    /// Derivatives along a motion end at an event behind which they do not exist.
     #[error(
         "the derivatives of the motion end at t = {} s, {reason}",
         fixed(*.time, 9)

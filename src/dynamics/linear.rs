@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::error::Error;
 use super::held::Held;
 use super::motion::FreeMotion;
-use crate::kinematics::{Direction, Output, OutputSource, Rates, Solution, Solver};
+use crate::kinematics::{Direction, Output, Rates, Solution, Solver};
 use crate::mechanism::{DriverId, Mechanism, Order};
 
 /// The linear equations of small motions about a pose: δẋ = A δx + B δu, δy = C δx + D δu.
@@ -116,9 +116,8 @@ impl FreeMotion {
     ) -> Result<(DVector<f64>, DVector<f64>), Error> {
         let mechanism = solver.mechanism().clone();
         let mut direction = Direction::zero(&mechanism);
-        let mut loads = vec![0.0; solution.loads.len()];
         match change {
-            Change::Force(place) => loads[place] = 1.0,
+            Change::Force(place) => direction.loads[place] = 1.0,
             Change::Driver(driver, Order::Position) => {
                 direction.drivers[driver.index()].value = 1.0;
             }
@@ -127,21 +126,16 @@ impl FreeMotion {
             }
         }
         self.hold_velocities(solver, &solution.rates, &mut direction)?;
-        self.complete(solver, &solution.rates, &mut direction, &mut loads)?;
+        self.complete(solver, &solution.rates, &mut direction)?;
         let freedoms = self.freedoms().iter();
         let rates = freedoms.flat_map(|id| direction.drivers[id.index()].derivatives);
         let rates = DVector::from_vec(rates.collect());
-        let of_forces = solution.force_changes(solver, &direction, &loads)?;
+        let of_forces = solution.force_changes(solver, &direction)?;
         let sensitivity =
             solver.sensitivity(&solution.rates, &solution.driver_rates, &direction)?;
         let forces = solution.forces().zip(of_forces.as_ref());
         let outputs = outputs.iter();
-        let seen = outputs.map(|output| match output.source {
-            OutputSource::Input(index) if mechanism.inputs[index].given.is_none() => {
-                Ok(loads[mechanism.input_place(index)])
-            }
-            source => source.change(&mechanism, &sensitivity, forces),
-        });
+        let seen = outputs.map(|output| output.source.change(&mechanism, &sensitivity, forces));
         let seen: Result<Vec<f64>, _> = seen.collect();
         Ok((rates, DVector::from_vec(seen?)))
     }

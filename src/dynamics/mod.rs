@@ -28,10 +28,10 @@
 //! | `overlap`, `apart` | [overlaps](Overlap) of parts, and the least move that brings them apart |
 //! | `corner` | corners of prescribed motions |
 //! | `impact` | velocities after impacts |
+//! | `strike` | a strike of contacts, as far as its changes need it |
 //! | `settle` | the modes after an event |
 //! | `choose` | the choice of what is held after an event |
 //! | `variations` | the changes of a motion along directions |
-//! | `strike` | velocities before and after a strike |
 //! | `saltation` | those changes at events |
 //! | `trials` | the system that the integrator steps |
 //! | `motion` | [`FreeMotion`]: the motion of one mechanism |

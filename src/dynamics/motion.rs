@@ -273,8 +273,8 @@ impl FreeMotion {
     }
 
     /// Completes a direction by the changes of the freedoms' accelerations, at the pose at which they
-    /// were [solved](Self::solve_accelerations) last: their efforts stay zero. `rates` are those of q
-    /// there, `loads` the changes of the inputs of forces, which are completed by those of passive forces.
+    /// were [solved](Self::solve_accelerations) last: their efforts stay zero; and by those of passive
+    /// forces. `rates` are those of q there.
     ///
     /// # Errors
     ///
@@ -284,9 +284,8 @@ impl FreeMotion {
         solver: &mut Solver,
         rates: &Rates,
         direction: &mut Direction,
-        loads: &mut [f64],
     ) -> Result<(), Error> {
-        self.equations.complete(solver, rates, direction, loads)
+        self.equations.complete(solver, rates, direction)
     }
 
     /// Returns the changes of the motion along its directions at the pose and for the rates and loads of
@@ -479,13 +478,12 @@ impl FreeMotion {
                 .map_err(Error::from)
             {
                 Ok(_) if self.equations.is_at_event() => {
-                    let Self { equations, x, .. } = self;
-                    x.copy_from_slice(&self.integrator.state().x);
-                    let delays = equations.reach_event(solver, given, x)?;
-                    equations.turns.begin();
+                    self.x.copy_from_slice(&self.integrator.state().x);
+                    let delays = self.equations.reach_event(solver, given, &mut self.x)?;
+                    self.equations.turns.begin();
                     self.settle(solver, given)?;
-                    let Self { equations, x, .. } = self;
-                    equations.leave_event(solver, given, &delays, x)?;
+                    self.equations
+                        .leave_event(solver, given, &delays, &mut self.x)?;
                     self.go_on(solver, given)?;
                     if ends_at_event {
                         return Ok(());

@@ -17,7 +17,7 @@ use super::error::Error;
 use super::function::FUNCTIONS;
 use super::given::Given;
 use super::passive::Mode;
-use super::strike::Strike;
+use super::strike::{Push, Strike};
 use super::triangular::{ascend, descend, factorise};
 use crate::kinematics::{Direction, ForceQuantity, KnownMotion, Rates, Solver};
 use crate::mechanism::{Dual, Jet, ParameterId};
@@ -55,21 +55,19 @@ impl Equations {
         self.strikes.clear();
         let mut rates = Rates::new(solver.pose().q.len());
         let varied = self.varied(solver, x, &mut rates)?;
-        let still = vec![0.0; self.point.loads.len()];
-        let mut flow = Direction::zero(solver.mechanism());
-        let drift = self.drift(solver, given, time, &mut flow);
+        let mut flow = self.drift(solver, given, time);
         for freedom in &self.freedoms {
             let [velocity, acceleration] = self.point.drivers[freedom.index()].derivatives;
             flow.drivers[freedom.index()] = Jet::new(velocity, [acceleration, 0.0]);
         }
         let mut delays: Option<Vec<f64>> = None;
         for index in self.watch.ended.clone() {
-            let Some(rate) = self.function_change(solver, &rates, (&flow, &drift), index)? else {
+            let Some(rate) = self.function_change(solver, &rates, &flow, index)? else {
                 continue;
             };
             let mut own = Vec::with_capacity(varied.len());
             for direction in &varied {
-                let change = self.function_change(solver, &rates, (direction, &still), index)?;
+                let change = self.function_change(solver, &rates, direction, index)?;
                 own.push(-change.unwrap_or(0.0) / rate);
             }
             if !own.iter().all(|delay| delay.is_finite()) {
@@ -131,14 +129,14 @@ impl Equations {
         }
     }
 
-    /// Returns the change of a function that has ended a mode, along a direction and changes of the loads;
-    /// `None` where the motion and its rates do not depend on its instant: a contact is left, and an elastic
-    /// stop becomes loose, where their forces are zero.
+    /// Returns the change of a function that has ended a mode, along a direction; `None` where the motion and
+    /// its rates do not depend on its instant: a contact is left, and an elastic stop becomes loose, where
+    /// their forces are zero.
     fn function_change(
         &mut self,
         solver: &mut Solver,
         rates: &Rates,
-        (direction, loads): (&Direction, &[f64]),
+        direction: &Direction,
         index: usize,
     ) -> Result<Option<f64>, Error> {
         let (force, side) = (index / FUNCTIONS, index % FUNCTIONS);
@@ -167,18 +165,18 @@ impl Equations {
         if passive.list[force].cause.friction().is_none() {
             return Ok(None);
         }
-        let (mut direction, mut loads) = (direction.clone(), loads.to_vec());
-        self.complete(solver, rates, &mut direction, &mut loads)?;
+        let mut direction = direction.clone();
+        self.complete(solver, rates, &mut direction)?;
         let motion = KnownMotion {
             rates,
             driver_rates: &self.point.drivers,
             inputs: &self.point.loads,
         };
-        let forces = solver.force_sensitivity(motion, &direction, &loads, &mut self.forces)?;
+        let forces = solver.force_sensitivity(motion, &direction, &mut self.forces)?;
         let along = solver.sensitivity(rates, &self.point.drivers, &direction)?;
         let parameter = |id: ParameterId| along.parameter_value(id);
         let limit = self.passive.bound_change(force, &parameter, &forces);
-        let change = loads[self.inputs() + force];
+        let change = direction.loads[self.inputs() + force];
         Ok(Some(if side == 0 {
             change + limit
         } else {
@@ -203,7 +201,6 @@ impl Equations {
         let struck = self.moving(solver, before, &jump)?;
         let [before, after] = [before, after].map(|v| self.moving(solver, v, &rest));
         let (before, after) = (before?, after?);
-        let still = vec![0.0; self.point.loads.len()];
         let (mut without, of_passive) = (self.point.loads.clone(), self.inputs());
         without[of_passive..].fill(0.0);
         let mut with = without.clone();
@@ -224,8 +221,7 @@ impl Equations {
                     driver_rates: drivers,
                     inputs: loads,
                 };
-                let forces =
-                    solver.force_sensitivity(motion, direction, &still, &mut self.forces)?;
+                let forces = solver.force_sensitivity(motion, direction, &mut self.forces)?;
                 for (change, freedom) in changes.iter_mut().zip(&self.freedoms) {
                     *change += sign * forces.change(ForceQuantity::Effort(*freedom))?;
                 }
@@ -236,27 +232,14 @@ impl Equations {
             let parameter = |id: ParameterId| of_before.1[id.index()];
             let mut impulses = Vec::with_capacity(some.len());
             for (k, push) in pushes.iter().enumerate() {
-                let cause = &self.passive.list[push.force].cause;
-                let [part, change] = match push.restitution {
-                    None => [0.0; 2],
-                    Some(part) => {
-                        let own = cause.restitution(solver.mechanism(), &parameter);
-                        if own.value.to_bits() != part.to_bits() {
-                            let time = solver.pose().time;
-                            return Err(Error::NoDerivatives {
-                                time,
-                                reason: UNEQUAL,
-                            });
-                        }
-                        [part, own.first()]
-                    }
-                };
-                let wanted = -part * of_before.0[k] - change * push.rate - of_after.0[k];
+                let part = self.restitution(solver, push, &parameter)?;
+                let wanted =
+                    -part.value * of_before.0[k] - part.first() * push.rate - of_after.0[k];
                 impulses.push(wanted - columns.column(k).dot(&changes));
             }
             descend(&compliance, &mut impulses);
             ascend(&compliance, &mut impulses);
-            changes += columns.clone() * DVector::from_vec(impulses);
+            changes += &columns * DVector::from_vec(impulses);
             ascend(&self.factor, changes.as_mut_slice());
             let first = 2 * count + 1 + 2 * count * place + count;
             for (x, change) in x[first..first + count].iter_mut().zip(&changes) {
@@ -264,6 +247,26 @@ impl Equations {
             }
         }
         Ok(())
+    }
+
+    /// Returns the part of the rate with which a contact has bounced, with its change.
+    fn restitution(
+        &self,
+        solver: &Solver,
+        push: &Push,
+        parameter: &impl Fn(ParameterId) -> Dual,
+    ) -> Result<Dual, Error> {
+        let Some(part) = push.restitution else {
+            return Ok(Dual::constant(0.0));
+        };
+        let cause = &self.passive.list[push.force].cause;
+        let own = cause.restitution(solver.mechanism(), parameter);
+        if own.value.to_bits() == part.to_bits() {
+            return Ok(own);
+        }
+        let time = solver.pose().time;
+        let reason = UNEQUAL;
+        Err(Error::NoDerivatives { time, reason })
     }
 
     /// Returns the directions with the changes in x, which are later by these times.
@@ -276,8 +279,7 @@ impl Equations {
     ) -> Vec<Direction> {
         let (count, time) = (self.freedoms.len(), solver.pose().time);
         self.set_drivers(solver, given, time, x);
-        let mut flow = Direction::zero(solver.mechanism());
-        self.drift(solver, given, time, &mut flow);
+        let flow = self.drift(solver, given, time);
         let mut directions = self.directions.clone();
         let changes = x[2 * count + 1..].chunks_exact(2 * count);
         for ((direction, delay), changes) in directions.iter_mut().zip(delays).zip(changes) {

@@ -153,14 +153,13 @@ impl FreeMotion {
         let count = self.freedoms().len();
         let mut stiffness = DMatrix::zeros(count, count);
         let rest = self.rest(solver, pushes)?;
-        let still = vec![0.0; rest.loads.len()];
         let Equations {
             forces, freedoms, ..
         } = &mut self.equations;
         for (column, along) in freedoms.iter().enumerate() {
             let mut direction = Direction::zero(solver.mechanism());
             direction.drivers[along.index()].value = 1.0;
-            let changes = solver.force_sensitivity(rest.motion(), &direction, &still, forces)?;
+            let changes = solver.force_sensitivity(rest.motion(), &direction, forces)?;
             for (row, freedom) in freedoms.iter().enumerate() {
                 stiffness[(row, column)] = changes.change(ForceQuantity::Effort(*freedom))?;
             }

@@ -1,6 +1,6 @@
-//! A strike, as far as its changes along directions need it.
+//! A strike of contacts, as far as its changes along directions need it.
 
-/// A strike.
+/// Velocities that contacts have changed at one instant.
 #[derive(Debug)]
 pub(super) struct Strike {
     /// Velocities of the freedoms before and after.

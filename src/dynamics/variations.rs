@@ -56,9 +56,7 @@ impl Equations {
             return Ok(varied);
         }
         for direction in &mut varied {
-            let mut loads = vec![0.0; self.point.loads.len()];
-            self.complete(solver, rates, direction, &mut loads)?;
-            direction.loads = loads;
+            self.complete(solver, rates, direction)?;
         }
         Ok(varied)
     }
@@ -148,17 +146,15 @@ impl Equations {
     }
 
     /// Completes a direction by the changes of the freedoms' accelerations, for which their efforts
-    /// stay zero: J δü = −δeffort, and `loads` by those of passive forces. The point is that at which
-    /// accelerations were solved last, and `rates` are those of q there; `loads` are the changes of the
-    /// inputs of forces.
+    /// stay zero: J δü = −δeffort, and by those of passive forces. The point is that at which
+    /// accelerations were solved last, and `rates` are those of q there.
     pub(super) fn complete(
         &mut self,
         solver: &mut Solver,
         rates: &Rates,
         direction: &mut Direction,
-        loads: &mut [f64],
     ) -> Result<(), Error> {
-        self.complete_with(solver, rates, direction, loads, None)?;
+        self.complete_with(solver, rates, direction, None)?;
         if !self.passive.friction.slides_in_joints() {
             return Ok(());
         }
@@ -167,8 +163,8 @@ impl Equations {
             driver_rates: &self.point.drivers,
             inputs: &self.point.loads,
         };
-        let stays = solver.force_sensitivity(motion, direction, loads, &mut self.forces)?;
-        self.complete_with(solver, rates, direction, loads, Some(&stays))
+        let stays = solver.force_sensitivity(motion, direction, &mut self.forces)?;
+        self.complete_with(solver, rates, direction, Some(&stays))
     }
 
     /// Completes a direction, with friction in joints from the changes of the forces where it stays as it
@@ -178,7 +174,6 @@ impl Equations {
         solver: &mut Solver,
         rates: &Rates,
         direction: &mut Direction,
-        loads: &mut [f64],
         stays: Option<&ForceSensitivity>,
     ) -> Result<(), Error> {
         for freedom in &self.freedoms {
@@ -193,22 +188,23 @@ impl Equations {
             freedoms,
             ..
         } = self;
-        let of_passive = loads.len() - passive.loads();
+        let of_passive = point.loads.len() - passive.loads();
         let mut coordinates = Vec::new();
         if !passive.is_empty() {
             let sensitivity = solver.sensitivity(rates, &point.drivers, direction)?;
-            coordinates = passive.changes(&sensitivity, stays, &mut loads[of_passive..]);
+            let loads = &mut direction.loads[of_passive..];
+            coordinates = passive.changes(&sensitivity, stays, loads);
         }
         let motion = KnownMotion {
             rates,
             driver_rates: &point.drivers,
             inputs: &point.loads,
         };
-        let changes = solver.force_sensitivity(motion, direction, loads, forces)?;
+        let changes = solver.force_sensitivity(motion, direction, forces)?;
         for (change, freedom) in accelerations.iter_mut().zip(&*freedoms) {
             *change = -changes.change(ForceQuantity::Effort(*freedom))?;
         }
-        let holding = &mut loads[of_passive..];
+        let holding = &mut direction.loads[of_passive..];
         solve_changes(passive, &coordinates, factor, accelerations, holding);
         for (change, freedom) in accelerations.iter().zip(&*freedoms) {
             direction.drivers[freedom.index()].derivatives[1] = *change;
@@ -234,7 +230,6 @@ impl Equations {
         solver.solve_rates(|driver| self.point.drivers[driver.index()], &mut rates)?;
         jacobian.fill(0.0);
         dx_dt.fill(0.0);
-        let mut still = vec![0.0; self.point.loads.len()];
         for column in 0..2 * count {
             let mut direction = Direction::zero(solver.mechanism());
             let state = &mut direction.drivers[self.freedoms[column % count].index()];
@@ -244,30 +239,23 @@ impl Equations {
                 state.derivatives[0] = 1.0;
                 jacobian[(column - count, column)] = 1.0;
             }
-            self.complete(solver, &rates, &mut direction, &mut still)?;
+            self.complete(solver, &rates, &mut direction)?;
             for (row, change) in self.accelerations.iter().enumerate() {
                 jacobian[(count + row, column)] = *change;
             }
         }
-        let mut direction = Direction::zero(solver.mechanism());
-        let mut loads = self.drift(solver, given, t, &mut direction);
-        self.complete(solver, &rates, &mut direction, &mut loads)?;
+        let mut direction = self.drift(solver, given, t);
+        self.complete(solver, &rates, &mut direction)?;
         dx_dt[count..2 * count].copy_from_slice(&self.accelerations);
         Ok(())
     }
 
-    /// Sets a direction to the changes in time of all that is given, and returns those of the inputs
-    /// of forces.
-    pub(super) fn drift(
-        &self,
-        solver: &Solver,
-        given: &impl Given,
-        t: f64,
-        direction: &mut Direction,
-    ) -> Vec<f64> {
+    /// Returns the direction of all that is given, as time goes on.
+    pub(super) fn drift(&self, solver: &Solver, given: &impl Given, t: f64) -> Direction {
         /// Part of the time, or of a second, over which loads and accelerations are differenced: they are
         /// polynomials of low degree, so that rounding decides.
         const INCREMENT: f64 = 1e-6;
+        let mut direction = Direction::zero(solver.mechanism());
         direction.time = 1.0;
         let later = t + INCREMENT * t.abs().max(1.0);
         let definitions = solver.mechanism().drivers.iter().enumerate();
@@ -278,12 +266,12 @@ impl Equations {
                 direction.drivers[index] = Jet::new(velocity, [acceleration, rise / (later - t)]);
             }
         }
-        let mut loads = self.point.loads.clone();
-        given.loads(later, &mut loads[..self.inputs()]);
-        for (load, now) in loads.iter_mut().zip(&self.point.loads) {
+        let inputs = &mut direction.loads[..self.inputs()];
+        given.loads(later, inputs);
+        for (load, now) in inputs.iter_mut().zip(&self.point.loads) {
             *load = (*load - now) / (later - t);
         }
-        loads
+        direction
     }
 }
 

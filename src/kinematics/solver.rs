@@ -644,8 +644,8 @@ impl Solver {
         forces.lift_offs(&self.state, lifted)
     }
 
-    /// Returns the derivatives of motion and forces at the present pose along a direction, along
-    /// which the sizes of forces that are inputs change by `inputs`. Exact to rounding.
+    /// Returns the derivatives of motion and forces at the present pose along a direction. Exact to
+    /// rounding.
     ///
     /// # Errors
     ///
@@ -654,13 +654,12 @@ impl Solver {
         &mut self,
         motion: KnownMotion<'_>,
         direction: &Direction,
-        inputs: &[f64],
         forces: &mut Forces,
     ) -> Result<ForceSensitivity, Error> {
         let Self {
             compiled, state, ..
         } = self;
-        forces.sensitivity(compiled, state, motion, direction, inputs)
+        forces.sensitivity(compiled, state, motion, direction)
     }
 
     /// Gives the changes of the efforts of some drivers along each of some directions to `each`, with the

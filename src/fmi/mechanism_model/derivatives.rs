@@ -6,7 +6,7 @@ use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
 use crate::kinematics::constraint::of_coordinate;
 use crate::kinematics::{Direction, OutputSource, Solution};
-use crate::mechanism::{DriverId, Jet, Order, ParameterId, Signal};
+use crate::mechanism::{DriverId, Order, ParameterId, Signal};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
@@ -32,7 +32,6 @@ impl MechanismModel {
         // Also after outputs at other points.
         self.solve_freedoms()?;
         let mut direction = Direction::zero(&self.mechanism);
-        let mut loads = vec![0.0; self.motion.solution.loads.len()];
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
@@ -43,7 +42,7 @@ impl MechanismModel {
                     driver.derivatives[0] += velocity * change;
                     driver.derivatives[1] += acceleration * change;
                 }
-                Quantity::ForceInput(place) => loads[place] += change,
+                Quantity::ForceInput(place) => direction.loads[place] += change,
                 Quantity::Parameter(parameter) => {
                     direction.parameters[parameter.index()] += change;
                 }
@@ -61,16 +60,15 @@ impl MechanismModel {
                 _ => unreachable!("knowns are inputs, states, parameters and time"),
             }
         }
-        self.follow_along(&mut direction, &loads, phase);
-        self.accelerate_freedoms(&mut direction, &mut loads)?;
+        self.follow_along(&mut direction, phase);
+        self.accelerate_freedoms(&mut direction)?;
         let uses_forces = |unknown: &Quantity| match unknown {
             Quantity::Output(source) => source.uses_forces(&self.mechanism),
             _ => false,
         };
         let of_forces = if unknowns.iter().any(uses_forces) {
             self.set_loads();
-            let changes =
-                (self.motion.solution).force_changes(&mut self.motion.solver, &direction, &loads);
+            let changes = (self.motion.solution).force_changes(&mut self.motion.solver, &direction);
             changes.map_err(without_value)?
         } else {
             None
@@ -86,10 +84,7 @@ impl MechanismModel {
             .sensitivity(rates, driver_rates, &direction);
         let sensitivity = sensitivity.map_err(without_value)?;
         let forces = self.motion.solution.forces().zip(of_forces.as_ref());
-        let parameter = |id: ParameterId| {
-            let value = self.course.parameters[id.index()];
-            Jet::linear(value, sensitivity.parameter(id))
-        };
+        let parameter = |id: ParameterId| sensitivity.parameter_value(id);
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Parameter(parameter) => Some(sensitivity.parameter(parameter))
                 .filter(|change| change.is_finite())
@@ -111,15 +106,11 @@ impl MechanismModel {
     }
 
     /// Completes a direction by the changes of the freedoms' accelerations: their efforts stay zero.
-    fn accelerate_freedoms(
-        &mut self,
-        direction: &mut Direction,
-        loads: &mut [f64],
-    ) -> Result<(), Failure> {
+    fn accelerate_freedoms(&mut self, direction: &mut Direction) -> Result<(), Failure> {
         let Some((free, solver, solution)) = self.motion.parts() else {
             return Ok(());
         };
-        let completed = free.complete(solver, &solution.rates, direction, loads);
+        let completed = free.complete(solver, &solution.rates, direction);
         completed.map_err(without_value)
     }
 

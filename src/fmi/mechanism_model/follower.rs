@@ -64,9 +64,9 @@ impl MechanismModel {
         }
     }
 
-    /// Adds to a direction the changes of drivers that follow inputs, along which parameters and time change
-    /// as in the direction, and inputs by `loads`.
-    pub(super) fn follow_along(&self, direction: &mut Direction, loads: &[f64], phase: Phase) {
+    /// Adds to a direction the changes of drivers that follow inputs, for those of parameters, time and inputs
+    /// in it.
+    pub(super) fn follow_along(&self, direction: &mut Direction, phase: Phase) {
         if !self.has_followers() {
             return;
         }
@@ -81,7 +81,7 @@ impl MechanismModel {
             let parameter = |p: ParameterId| parameters[p.index()];
             let present = |input: usize| {
                 let value = self.course.force_inputs[input].present();
-                Dual::new(value, [loads[input]])
+                Dual::new(value, [direction.loads[input]])
             };
             let time = Dual::new(self.course.time, [direction.time]);
             let Some(followed) = driver.followed(&parameter, &present, time) else {

@@ -37,8 +37,8 @@ pub struct Direction {
     pub parameters: Vec<f64>,
     /// Change of the time, for prescribed motions.
     pub time: f64,
-    /// Changes of the sizes of forces that are inputs or follow from the motion, in the order of
-    /// [`Solution::loads`](crate::kinematics::Solution::loads); if it is empty, all stay.
+    /// Changes of inputs and of the sizes of forces without a law, in the order of
+    /// [`Solution::loads`](crate::kinematics::Solution::loads).
     pub loads: Vec<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Direction {
             drivers: vec![Jet::constant(0.0); mechanism.drivers.len()],
             parameters: vec![0.0; mechanism.parameters.len()],
             time: 0.0,
-            loads: Vec::new(),
+            loads: vec![0.0; mechanism.load_places().1],
         }
     }
 
@@ -71,6 +71,7 @@ pub struct Sensitivity<'a> {
     drivers: Vec<Varied>,
     parameters: Vec<Varied>,
     time: Dual,
+    loads: Vec<f64>,
     measures: &'a [Box<dyn Constraint>],
     /// The file's coordinates of freedoms that are followed in others.
     named: &'a [Option<Box<dyn Constraint>>],
@@ -145,11 +146,14 @@ impl Sensitivity<'_> {
         self.parameters[parameter.index()].value.first()
     }
 
-    /// Returns the change of an input: that of what gives it, none of one that comes from outside.
+    /// Returns the change of an input: that of what gives it, or of the load.
     pub(in crate::kinematics) fn input(&self, index: usize) -> f64 {
-        let given = self.system.mechanism().inputs[index].given.as_ref();
+        let mechanism = self.system.mechanism();
         let parameter = |id: ParameterId| self.parameter_value(id);
-        given.map_or(0.0, |size| size.evaluate(&parameter, self.time).first())
+        match &mechanism.inputs[index].given {
+            Some(size) => size.evaluate(&parameter, self.time).first(),
+            None => self.loads[mechanism.input_place(index)],
+        }
     }
 
     /// Returns the largest scaled change of q, or of the first of its derivatives that changes.
@@ -509,6 +513,7 @@ impl State {
             drivers,
             parameters,
             time: Dual::new(self.pose.time, [direction.time]),
+            loads: direction.loads.clone(),
             measures: &compiled.measures,
             named: &compiled.named,
             system,

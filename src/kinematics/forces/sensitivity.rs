@@ -158,8 +158,7 @@ impl Probe<'_> {
 }
 
 impl Forces {
-    /// Returns the derivatives of all forces along a direction, along which their inputs change by
-    /// `inputs`.
+    /// Returns the derivatives of all forces along a direction.
     ///
     /// # Errors
     ///
@@ -171,10 +170,9 @@ impl Forces {
         state: &mut State,
         motion: KnownMotion<'_>,
         direction: &Direction,
-        inputs: &[f64],
     ) -> Result<ForceSensitivity, Error> {
         let Some(point) = near_point(compiled, state) else {
-            return self.solved_sensitivity(compiled, state, motion, direction, inputs);
+            return self.solved_sensitivity(compiled, state, motion, direction);
         };
         let efforts = ForceParts {
             efforts: true,
@@ -193,7 +191,7 @@ impl Forces {
             |index| places.kind(index),
             |compiled, state, place, values| {
                 let motion = loads.motion(place);
-                let along = self.solved_sensitivity(compiled, state, motion, direction, inputs)?;
+                let along = self.solved_sensitivity(compiled, state, motion, direction)?;
                 values.extend(along.values);
                 values.push(PART_OF_LOADS * loads.natural() * along.change);
                 Ok(())
@@ -207,7 +205,7 @@ impl Forces {
         };
         let is_complete = |found: &Vec<f64>| !found.iter().any(|value| value.is_nan());
         if !point.is_at && !found.as_ref().is_some_and(is_complete) {
-            solved = self.solved_sensitivity(compiled, state, motion, direction, inputs)?;
+            solved = self.solved_sensitivity(compiled, state, motion, direction)?;
         }
         for (value, found) in solved.values.iter_mut().zip(found.iter().flatten()) {
             if !found.is_nan() {
@@ -224,14 +222,13 @@ impl Forces {
         state: &mut State,
         motion: KnownMotion<'_>,
         direction: &Direction,
-        inputs: &[f64],
     ) -> Result<ForceSensitivity, Error> {
         self.solve_directly(compiled, state, motion, ForceParts::ALL)?;
         let along = state.sensitivity(compiled, motion.rates, motion.driver_rates, direction)?;
         let along = Along {
             motion: &along,
             time: direction.time,
-            inputs,
+            inputs: &direction.loads,
         };
         self.sensitivity_along(compiled, state, motion, &along)
     }

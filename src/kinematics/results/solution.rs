@@ -240,9 +240,7 @@ impl Solution {
         outputs: &[Output],
         direction: &Direction,
     ) -> Result<Vec<f64>, Error> {
-        let mut loads = direction.loads.clone();
-        loads.resize(self.loads.len(), 0.0);
-        let of_forces = self.force_changes(solver, direction, &loads)?;
+        let of_forces = self.force_changes(solver, direction)?;
         let mechanism = solver.mechanism().clone();
         let change = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
         let forces = self.forces().zip(of_forces.as_ref());
@@ -251,8 +249,8 @@ impl Solution {
         changes.collect()
     }
 
-    /// Returns the changes of forces along a direction, along which the loads change by `loads`, without
-    /// freedoms those of friction by themselves; `None` unless forces are sought.
+    /// Returns the changes of forces along a direction, in which those of friction are not read without
+    /// freedoms; `None` unless forces are sought.
     ///
     /// # Errors
     ///
@@ -261,7 +259,6 @@ impl Solution {
         &mut self,
         solver: &mut Solver,
         direction: &Direction,
-        loads: &[f64],
     ) -> Result<Option<ForceSensitivity>, Error> {
         if !self.friction.is_empty() {
             // Friction is that of the pose.
@@ -279,30 +276,30 @@ impl Solution {
         else {
             return Ok(None);
         };
-        let mut loads = loads.to_vec();
+        let mut direction = direction.clone();
         let motion = KnownMotion {
             rates,
             driver_rates,
             inputs,
         };
         if !friction.is_empty() {
-            let mut change = |solver: &mut Solver, loads: &mut [f64], stays: Option<&_>| {
+            let mut change = |solver: &mut Solver, direction: &mut Direction, stays: Option<&_>| {
                 let along = solver.sensitivity(rates, driver_rates, direction)?;
                 let value = |id: ParameterId| along.parameter_value(id);
                 let rates = rubbed.iter().map(|rubbed| along.rate(&*rubbed.relation));
                 let rates: Vec<Dual> = rates.collect();
                 let changes = friction.changes(&value, &rates, stays);
                 for (Rubbed { load, .. }, change) in rubbed.iter().zip(changes) {
-                    loads[*load] = *change;
+                    direction.loads[*load] = *change;
                 }
                 Ok::<_, Error>(friction.slides_in_joints())
             };
-            if change(solver, &mut loads, None)? {
-                let stays = solver.force_sensitivity(motion, direction, &loads, forces)?;
-                change(solver, &mut loads, Some(&stays))?;
+            if change(solver, &mut direction, None)? {
+                let stays = solver.force_sensitivity(motion, &direction, forces)?;
+                change(solver, &mut direction, Some(&stays))?;
             }
         }
-        let changes = solver.force_sensitivity(motion, direction, &loads, forces)?;
+        let changes = solver.force_sensitivity(motion, &direction, forces)?;
         Ok(Some(changes))
     }
 

@@ -291,7 +291,7 @@ fn derivatives_at_a_change_point_are_limits_or_refused() {
         let mechanism = run.solver.mechanism().clone();
         let mut direction = Direction::zero(&mechanism);
         direction.time = 1.0;
-        let changes = run.solution.force_changes(&mut run.solver, &direction, &[]);
+        let changes = run.solution.force_changes(&mut run.solver, &direction);
         let changes = changes.expect("efforts change").expect("forces are sought");
         let of_effort = changes
             .change(ForceQuantity::Effort(DRIVER))
@@ -306,9 +306,7 @@ fn derivatives_at_a_change_point_are_limits_or_refused() {
             );
         }
         let by_gravity = Direction::by_parameter(&mechanism, ParameterId(0));
-        let changes = run
-            .solution
-            .force_changes(&mut run.solver, &by_gravity, &[]);
+        let changes = run.solution.force_changes(&mut run.solver, &by_gravity);
         let changes = changes.expect("efforts change").expect("forces are sought");
         let of_effort = changes
             .change(ForceQuantity::Effort(DRIVER))

@@ -65,9 +65,8 @@ fn power_becomes_energy() {
             driver_rates: &driver_rates,
             inputs: &inputs,
         };
-        let still = vec![0.0; inputs.len()];
         let along = solver
-            .force_sensitivity(motion, &direction, &still, &mut forces)
+            .force_sensitivity(motion, &direction, &mut forces)
             .expect("it is regular");
         let energies = [ForceQuantity::KineticEnergy, ForceQuantity::PotentialEnergy];
         let growth: f64 = energies
@@ -185,7 +184,6 @@ fn the_derivative_of_an_effort_by_an_acceleration_is_the_inertia() {
         let mut loaded = Loaded::new(loaded(&name));
         let mechanism = std::sync::Arc::clone(loaded.solver.mechanism());
         let rcond = loaded.solver.rcond();
-        let inputs = vec![0.0; loaded.inputs.len()];
         for (index, driver) in mechanism.drivers.iter().enumerate() {
             // The bias is told for inputs alone.
             if driver.motion().is_some() || driver.is_free() {
@@ -206,7 +204,7 @@ fn the_derivative_of_an_effort_by_an_acceleration_is_the_inertia() {
                 inputs: now,
             };
             let along = solver
-                .force_sensitivity(motion, &direction, &inputs, forces)
+                .force_sensitivity(motion, &direction, forces)
                 .expect("it is regular");
             let driver = DriverId(index);
             let inertia = forces.value(ForceQuantity::Inertia(driver));

@@ -65,11 +65,10 @@ fn the_effort_changes_with_velocity_and_parameter() {
     by_velocity.drivers[0].derivatives[0] = 1.0;
     let coulomb = mechanism.parameter_id("coulomb").expect("it is there");
     let by_parameter = Direction::by_parameter(&mechanism, coulomb);
-    let stay = vec![0.0; solution.loads.len()];
     // ∂/∂v of exp(−(v / 0.1)²) + 5 |v| against the motion, and 1 for each kind of friction.
     let slope = -2.0 * 0.08 / 0.01 * (-0.64_f64).exp() + 5.0;
     for (direction, wanted) in [(by_velocity, slope), (by_parameter, -1.0)] {
-        let changes = solution.force_changes(&mut solver, &direction, &stay);
+        let changes = solution.force_changes(&mut solver, &direction);
         let changes = changes.expect("they exist").expect("forces are sought");
         let change = changes.change(EFFORT).expect("it exists");
         assert!((change - wanted).abs() < 1e-13, "{change} {wanted}");
@@ -102,9 +101,8 @@ fn friction_falls_by_its_exponent() {
             let by_exponent = Direction::by_parameter(&mechanism, id);
             let slope = -exponent * ratio.powf(exponent - 1.0) / 0.1 * (-power).exp() + 5.0;
             let bend = -sign * power * ratio.ln() * (-power).exp();
-            let stay = vec![0.0; solution.loads.len()];
             for (direction, wanted) in [(by_velocity, slope), (by_exponent, bend)] {
-                let changes = solution.force_changes(&mut solver, &direction, &stay);
+                let changes = solution.force_changes(&mut solver, &direction);
                 let changes = changes.expect("they exist").expect("forces are sought");
                 let change = changes.change(EFFORT).expect("it exists");
                 assert!((change - wanted).abs() < 1e-13, "{change} {wanted}");

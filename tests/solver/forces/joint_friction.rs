@@ -145,8 +145,7 @@ fn the_effort_changes_as_differences_say() {
             0 | 1 => direction.drivers[0].derivatives[place] = 1.0,
             _ => direction = Direction::by_parameter(&mechanism, id),
         }
-        let stay = vec![0.0; solution.loads.len()];
-        let changes = solution.force_changes(&mut solver, &direction, &stay);
+        let changes = solution.force_changes(&mut solver, &direction);
         let changes = changes.expect("they exist").expect("forces are sought");
         let found = changes.change(EFFORT).expect("it exists");
         let difference = |h: f64| {

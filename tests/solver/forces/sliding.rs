@@ -37,8 +37,7 @@ fn check_changes(mechanism: &Arc<Mechanism>, at: [f64; 3]) {
             1 | 2 => direction.drivers[0].derivatives[place - 1] = 1.0,
             _ => direction.parameters[0] = 1.0,
         }
-        let stay = vec![0.0; solution.loads.len()];
-        let changes = solution.force_changes(&mut solver, &direction, &stay);
+        let changes = solution.force_changes(&mut solver, &direction);
         let changes = changes.expect("they exist").expect("forces are sought");
         let found = changes.change(EFFORT).expect("it exists");
         let difference = |h: f64| {

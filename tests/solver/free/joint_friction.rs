@@ -411,10 +411,7 @@ fn the_acceleration_changes_as_differences_say() {
         ("load", by("load"), Box::new(parameter("load")), 1e-1),
     ];
     for (name, mut direction, other, h) in cases {
-        let mut loads = vec![0.0; run.solver.forces().loads()];
-        let completed = run
-            .free
-            .complete(&mut run.solver, &rates, &mut direction, &mut loads);
+        let completed = run.free.complete(&mut run.solver, &rates, &mut direction);
         completed.expect("it has derivatives");
         let found = direction.drivers[0].second();
         let difference = |h: f64| (accelerated(&other(h)) - accelerated(&other(-h))) / (2.0 * h);

@@ -572,7 +572,7 @@ fn a_spring_at_zero_has_the_derivatives_of_its_components() {
         solution,
         ..
     } = &mut run;
-    let completed = free.complete(solver, &solution.rates, &mut by_length.clone(), &mut []);
+    let completed = free.complete(solver, &solution.rates, &mut by_length.clone());
     let refused = completed.expect_err("no direction").to_string();
     assert!(
         refused.starts_with("force `pull` has no finite derivative"),

@@ -242,10 +242,7 @@ fn touching_flanks_carry_the_torque() {
     (run.solver)
         .solve_rates(|driver| drivers[driver.index()], &mut rates)
         .expect("the pose is regular");
-    let mut loads = vec![0.0; run.solver.forces().loads()];
-    let completed = run
-        .free
-        .complete(&mut run.solver, &rates, &mut direction, &mut loads);
+    let completed = run.free.complete(&mut run.solver, &rates, &mut direction);
     completed.expect("it has derivatives");
     assert_near(direction.drivers[0].second(), 1.0 / inertia);
     assert_near(direction.drivers[1].second(), -1.0 / (3.0 * inertia));

@@ -104,10 +104,7 @@ impl Run {
     fn slope(&mut self) -> Result<f64, Error> {
         let mut direction = Direction::zero(self.solver.mechanism());
         direction.time = 1.0;
-        let loads = vec![0.0; self.solution.loads.len()];
-        let changes = self
-            .solution
-            .force_changes(&mut self.solver, &direction, &loads)?;
+        let changes = self.solution.force_changes(&mut self.solver, &direction)?;
         let changes = changes.expect("forces are sought");
         changes.change(ForceQuantity::Effort(DriverId(0)))
     }
